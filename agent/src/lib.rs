@@ -25,5 +25,5 @@ pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
 pub use goal_sampler::Goal;
 pub use policy::{PURPOSES, Parts, Policy};
 pub use settings::{AgentSettings, Reward};
-pub use situation::{Features, Situation, StraightLineTravel, Travel};
+pub use situation::{Features, Situation, Travel};
 pub use strategies::{FreshMap, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy};

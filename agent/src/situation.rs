@@ -64,18 +64,3 @@ pub trait Travel {
     /// where no path is known.
     fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>);
 }
-
-/// Travel times along straight lines through everything, at one meter per unit of time: for users without a
-/// planner.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct StraightLineTravel;
-
-impl Travel for StraightLineTravel {
-    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
-        let frame = mapper.frame();
-        let from = pose.translation.vector.into();
-        let time = |index| nalgebra::distance(&frame.center(frame.cell(index)), &from);
-        times.clear();
-        times.extend((0..frame.len()).map(time));
-    }
-}

@@ -12,8 +12,12 @@
 //! cargo run -p curious-evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS [NOISE_M]]]]]
 //! ```
 
+#[path = "shared/alignment.rs"]
+mod alignment;
+
 use agent::Policy;
-use evaluation::metrics::{RateScores, alignment, quantile, rate_scores};
+use alignment::alignment;
+use evaluation::metrics::{RateScores, quantile, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use files::UnfinishedFile;
 use interfaces::{GridFrame, LaserReading, PoseMode, World, heading_rad};

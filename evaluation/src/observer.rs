@@ -2,10 +2,10 @@
 
 use crate::known_things::KnownThings;
 use crate::metrics::{
-    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Things, TrueChains, map_scores,
+    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, TrueChains, map_scores,
 };
 use crate::scheduled_things::ScheduledThings;
-use interfaces::{GroundTruth, LaserReading, Twist};
+use interfaces::{LaserReading, Twist};
 use mapper::Mapper;
 use results::thinned::{Goals, Thinned};
 use robot::{Level, Message, Pilot, Robot, Turn};
@@ -29,8 +29,8 @@ pub type Curve = Thinned<(f64, MapScores), 1024>;
 pub struct Observer {
     /// The delays between changes that a beam has shown and the map.
     pub latency: Latency,
-    /// The detection of the things that appeared or disappeared.
-    pub things: Things,
+    /// The number of things that have appeared or disappeared.
+    pub appearances: usize,
     /// The accuracy on swept cells.
     pub changing: ChangingAccuracy,
     /// The quality of the predicted map on swept cells out of view.
@@ -83,7 +83,6 @@ impl Observer {
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
         let (truth, laser) = (world.truth(), world.true_pose() * reading.mount);
         self.latency.observe(truth, mapper, reading, &laser);
-        self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
         self.forecasts.observe(mapper, truth, Some(&self.true_chains));
         self.scheduled.sample(world, mapper);
@@ -105,7 +104,11 @@ impl Observer {
             self.goals.extend(pilot.view().goal);
         }
         let mut log = |level, text| self.messages.push(Message { level, text });
-        self.things.take_messages().into_iter().for_each(|text| log(Level::Event, text));
+        for event in world.obstacle_events().iter().skip(self.appearances) {
+            let verb = if event.appeared { "appeared" } else { "disappeared" };
+            log(Level::Event, format!("{} {verb}", event.name));
+        }
+        self.appearances = world.obstacle_events().len();
         for contact in world.contacts() {
             let is_own = contact.own_speed_mps > OWN_MPS;
             self.contacts[usize::from(contact.moving)] += 1;

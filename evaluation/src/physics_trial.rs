@@ -1,7 +1,7 @@
 //! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
 use crate::known_things::KnownThingsScores;
-use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
+use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores};
 use crate::observer::{Observer, map_hash};
 use crate::scheduled_things::ScheduledThings;
 use crate::summary::{Contacts, CurvePoint, RunResults};
@@ -223,7 +223,6 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let curve = observer.curve.samples().iter();
         RunResults {
             map: map_scores(mapper, truth),
-            reachable: reachable_scores(mapper, truth, &world.spec().visible_cells()),
             changing: observer.changing.scores(),
             predicted: observer.prediction.scores(),
             forecasts: observer.forecasts.scores(),
@@ -244,7 +243,6 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             scheduled: observer.scheduled.scores(),
             known_things: KnownThingsScores::of(&observer.known_things.rows(world, mapper)),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
-            things: observer.things.reports().cloned().collect(),
             curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),
             map_hash: map_hash(mapper),
         }

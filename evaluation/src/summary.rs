@@ -3,7 +3,7 @@
 use crate::known_things::{KnownThingsScores, ThingBrier};
 use crate::metrics::{
     Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
-    RateScores, ReachableScores, StateScores, ThingReport,
+    RateScores, StateScores,
 };
 use crate::scheduled_things::ScheduledScores;
 use results::numbers::percent;
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// Coverage and map quality at one time.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -71,9 +71,6 @@ pub struct RunResults {
     /// Coverage and map quality at the end.
     #[serde(flatten)]
     pub map: MapScores,
-    /// The same at the end, over the cells that the robot could see from some pose that it can reach.
-    #[serde(flatten)]
-    pub reachable: ReachableScores,
     /// The accuracy on swept cells over the run; `null` if there were no such cells.
     #[serde(flatten)]
     pub changing: ChangingScores,
@@ -113,9 +110,6 @@ pub struct RunResults {
     pub known_things: Option<KnownThingsScores>,
     /// For each strategy, the share of the goals that it selected.
     pub strategy_share: BTreeMap<String, f64>,
-    /// The detection of the things that appeared or disappeared: at most two entries per thing, since a thing
-    /// appears and disappears at most once.
-    pub things: Vec<ThingReport>,
     /// Coverage and map quality over time: every 100th reading, and for long runs 513 to 1024 points, spread evenly.
     pub curve: Vec<CurvePoint>,
     /// The hash of everything that was learned, see [`crate::observer::map_hash`].
@@ -156,13 +150,9 @@ impl fmt::Display for Summary {
 
 impl fmt::Display for RunResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [reachable, all, correct] =
-            [self.reachable.coverage_reachable, self.map.coverage, self.map.map_quality].map(percent);
+        let [seen, correct] = [self.map.coverage, self.map.map_quality].map(percent);
         let RateScores { false_change_events, false_map_changes, static_cells, .. } = self.rates;
-        writeln!(
-            f,
-            "  seen      {reachable} of the cells in sight of reachable places, {all} of free cells and their borders"
-        )?;
+        writeln!(f, "  seen      {seen} of the free cells and their borders")?;
         writeln!(
             f,
             "  map       {correct} correct now; {false_change_events} false changes recorded, {false_map_changes} in the map, on \
@@ -242,12 +232,11 @@ impl RunResults {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{MapScores, ReachableScores};
+    use crate::metrics::MapScores;
 
     fn results(rates: RateScores, predicted: StateScores) -> RunResults {
         RunResults {
             map: MapScores { coverage: 0.99999, map_quality: 0.9999 },
-            reachable: ReachableScores { coverage_reachable: 1.0, map_quality_reachable: 0.9999 },
             rates,
             predicted,
             contacts: Contacts { own_motion: 1, run_into: 2 },
@@ -275,7 +264,7 @@ mod tests {
             brier_true_chains: Some(0.014),
         };
         insta::assert_snapshot!(results(rates, predicted), @"
-          seen      100.0 % of the cells in sight of reachable places, >99.9 % of free cells and their borders
+          seen      >99.9 % of the free cells and their borders
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 50000 static cells
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more; log error 0.91 (0.69: a factor of 2); AUC 0.83 (1 is perfect, 0.5 chance)
           predicted Brier score out of view 0.016 (as last seen 0.027, share of time blocked 0.016, true rates 0.014)
@@ -286,7 +275,7 @@ mod tests {
     #[test]
     fn a_map_without_changes_is_short() {
         insta::assert_snapshot!(results(RateScores::default(), StateScores::default()), @"
-          seen      100.0 % of the cells in sight of reachable places, >99.9 % of free cells and their borders
+          seen      >99.9 % of the free cells and their borders
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 0 static cells
           contacts  1 by its own motion, 2 in which something ran into it
         ");

@@ -1,4 +1,4 @@
-//! From trials that arrive in their order to the runs of a report, without keeping the trials.
+//! From trials in their order to the runs of a report.
 
 use super::comparison::{Comparison, compare_all};
 use super::statistics::Quantiles;
@@ -22,78 +22,53 @@ pub struct UnequalTimes;
 /// The place of a name in a report, and the name.
 type Place = (usize, String);
 
-/// Makes a report from trials that arrive in the order of a report: by world, estimator, strategy and seed.
+/// The report of trials in the order of a report: by world, estimator, strategy and seed.
 ///
-/// The memory is that of the report, and a few numbers per trial: single runs and merged shards have the same code and
-/// the same sums.
-#[derive(Default)]
-pub struct ReportBuilder {
-    settings: ReportSettings,
-    times: Vec<u64>,
-    finished: u64,
-    /// By world and estimator, then by strategy.
-    sums: BTreeMap<[Place; 2], BTreeMap<Place, StrategySums>>,
-}
-
-impl ReportBuilder {
-    /// A report without trials.
-    pub fn new(settings: ReportSettings) -> Self {
-        Self { settings, ..Self::default() }
-    }
-
-    /// Adds a trial.
-    ///
-    /// # Errors
-    ///
-    /// When the trial was not sampled at the times of the first trial.
-    pub fn add(&mut self, trial: &Trial) -> Result<(), UnequalTimes> {
-        let times = trial.samples.iter().map(|sample| sample.time);
-        if self.finished == 0 {
-            self.times = times.clone().collect();
-        }
-        if !times.eq(self.times.iter().copied()) {
+/// # Errors
+///
+/// When the trials were not sampled at the same times.
+pub(super) fn build(settings: ReportSettings, trials: &[Trial]) -> Result<Report, UnequalTimes> {
+    let times_of = |trial: &Trial| trial.samples.iter().map(|sample| sample.time).collect::<Vec<u64>>();
+    let times = trials.first().map(times_of).unwrap_or_default();
+    // By world and estimator, then by strategy.
+    let mut sums: BTreeMap<[Place; 2], BTreeMap<Place, StrategySums>> = BTreeMap::new();
+    for trial in trials {
+        if times_of(trial) != times {
             return Err(UnequalTimes);
         }
-        self.finished += 1;
-        let ReportSettings { worlds, estimators, strategies, .. } = &self.settings;
+        let ReportSettings { worlds, estimators, strategies, .. } = &settings;
         let run = [position(worlds, &trial.world), position(estimators, &trial.estimator)];
-        let sums = self.sums.entry(run).or_default().entry(position(strategies, &trial.strategy));
-        sums.or_insert_with(|| StrategySums::new(&trial.strategy, &self.times)).add_trial(trial);
-        Ok(())
+        let sums = sums.entry(run).or_default().entry(position(strategies, &trial.strategy));
+        sums.or_insert_with(|| StrategySums::new(&trial.strategy, &times)).add_trial(trial);
     }
-
-    /// The report of all trials that were added.
-    pub fn finish(self) -> Report {
-        let Self { settings, times, finished, sums } = self;
-        let quantiles = Quantiles::default();
-        let mut runs = Vec::new();
-        // By estimator: the number of worlds, and the sums over the worlds by strategy.
-        let mut all_worlds: BTreeMap<Place, (u64, BTreeMap<Place, StrategySums>)> = BTreeMap::new();
-        for ([(_, world), estimator], strategies) in sums {
-            let (worlds, of_all) = all_worlds.entry(estimator.clone()).or_default();
-            let result = |(place, sums): (Place, StrategySums)| {
-                let result = sums.finish(&quantiles);
-                let of_all = of_all.entry(place);
-                let of_all = of_all.or_insert_with(|| StrategySums::new(&result.name, &times));
-                of_all.add_world(*worlds, &result);
-                result
-            };
-            let results: Vec<StrategyResult> = strategies.into_iter().map(result).collect();
-            *worlds += 1;
-            runs.push(Run::new(world, 1, &estimator.1, results, &quantiles));
-        }
-        for ((_, estimator), (worlds, strategies)) in all_worlds.into_iter().filter(|(_, all)| all.0 > 1) {
-            let results = strategies.into_values().map(|sums| sums.finish(&quantiles)).collect();
-            runs.push(Run::new(
-                format!("all worlds ({worlds})"),
-                worlds as usize,
-                &estimator,
-                results,
-                &quantiles,
-            ));
-        }
-        Report { settings, finished, runs }
+    let quantiles = Quantiles::default();
+    let mut runs = Vec::new();
+    // By estimator: the number of worlds, and the sums over the worlds by strategy.
+    let mut all_worlds: BTreeMap<Place, (u64, BTreeMap<Place, StrategySums>)> = BTreeMap::new();
+    for ([(_, world), estimator], strategies) in sums {
+        let (worlds, of_all) = all_worlds.entry(estimator.clone()).or_default();
+        let result = |(place, sums): (Place, StrategySums)| {
+            let result = sums.finish(&quantiles);
+            let of_all = of_all.entry(place);
+            let of_all = of_all.or_insert_with(|| StrategySums::new(&result.name, &times));
+            of_all.add_world(*worlds, &result);
+            result
+        };
+        let results: Vec<StrategyResult> = strategies.into_iter().map(result).collect();
+        *worlds += 1;
+        runs.push(Run::new(world, 1, &estimator.1, results, &quantiles));
     }
+    for ((_, estimator), (worlds, strategies)) in all_worlds.into_iter().filter(|(_, all)| all.0 > 1) {
+        let results = strategies.into_values().map(|sums| sums.finish(&quantiles)).collect();
+        runs.push(Run::new(
+            format!("all worlds ({worlds})"),
+            worlds as usize,
+            &estimator,
+            results,
+            &quantiles,
+        ));
+    }
+    Ok(Report { settings, finished: trials.len() as u64, runs })
 }
 
 // All strategies with one estimator in one world, or over all worlds.
@@ -162,21 +137,21 @@ pub(super) fn conditions(run: &Run, settings: &ReportSettings) -> String {
     format!("{trials} of {length}{short}, estimator {}{sensor}", run.estimator)
 }
 
-// `trials.csv`: one row per trial and sample, written while the trials arrive. An undefined value is an empty field. A name that
+// `trials.csv`: one row per trial and sample. An undefined value is an empty field. A name that
 // would begin a formula has an apostrophe before it.
 
 /// The number of trials whose rows are made together, on all threads.
 const BATCH: usize = 256;
 
-/// Takes trials in the order of the report one by one, writes `trials.csv` into a folder, and makes the report. No trial is kept.
+/// Writes `trials.csv` into a folder, and makes the report. `trials` are in the order of the report.
 ///
 /// # Errors
 ///
-/// The first error of `trials`; when the file cannot be written, or trials were not sampled at the same times.
+/// When the file cannot be written, or trials were not sampled at the same times.
 pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
     settings: ReportSettings,
     folder: &Path,
-    mut trials: impl Iterator<Item = Result<Trial, E>>,
+    trials: &[Trial],
 ) -> Result<Report, E> {
     let path = folder.join("trials.csv");
     let failed = |why: io::Error| OutputError::new(&path, why);
@@ -187,18 +162,12 @@ pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
         .write_record(head.iter().chain(&names).chain(&["map_hash"]))
         .map_err(io::Error::from);
     head.map_err(failed)?;
-    let mut report = ReportBuilder::new(settings);
-    loop {
-        let batch: Vec<Trial> = trials.by_ref().take(BATCH).collect::<Result<_, E>>()?;
-        if batch.is_empty() {
-            break;
-        }
+    for batch in trials.chunks(BATCH) {
         let texts: Vec<_> = batch.par_iter().map(rows).collect();
         texts.into_iter().try_for_each(|text| file.write_all(&text?)).map_err(failed)?;
-        batch.iter().try_for_each(|trial| report.add(trial))?;
     }
     file.into_inner().map_err(|error| failed(error.into_error()))?.finish()?;
-    Ok(report.finish())
+    Ok(build(settings, trials)?)
 }
 
 /// The rows of a trial.

@@ -17,7 +17,7 @@ mod table;
 #[cfg(feature = "programs")]
 pub mod trials;
 
-pub use builder::{ReportBuilder, Run, UnequalTimes, collect};
+pub use builder::{Run, UnequalTimes, collect};
 pub use comparison::Comparison;
 pub use statistics::{Estimate, PairedTest, paired_test};
 pub use strategy::{Measure, StrategyResult};
@@ -154,11 +154,7 @@ impl Report {
     /// When the trials were not sampled at the same times.
     pub fn new(settings: ReportSettings, mut trials: Vec<Trial>) -> Self {
         settings.sort(&mut trials);
-        let mut report = ReportBuilder::new(settings);
-        for trial in &trials {
-            assert!(report.add(trial).is_ok(), "trials are sampled at the same times");
-        }
-        report.finish()
+        builder::build(settings, &trials).expect("trials are sampled at the same times")
     }
 
     /// The run with `estimator` in `world`, or over `all worlds (N)`.

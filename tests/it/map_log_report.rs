@@ -109,7 +109,13 @@ fn an_invalid_file_of_names_is_refused() {
     let run = Run::of("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 30));
     run.write("names.toml", &LAMP.replace("y_m", "y"));
-    insta::assert_snapshot!(run.refuses("a.log --quiet --no-rrd --places names.toml"), @"error: names.toml, line 4, `y`: unknown field `y`, expected one of `name`, `x_m`, `y_m`, `radius_m`");
+    insta::assert_snapshot!(run.refuses("a.log --quiet --no-rrd --places names.toml"), @"
+    error: names.toml: TOML parse error at line 4, column 1
+      |
+    4 | y = 0.1
+      | ^
+    unknown field `y`, expected one of `name`, `x_m`, `y_m`, `radius_m`
+    ");
 }
 
 #[test]

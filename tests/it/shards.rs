@@ -59,48 +59,42 @@ fn houses_have_shards_as_well() {
 
 #[test]
 #[cfg(unix)]
-fn a_killed_shard_goes_on_and_no_other_process_may_have_it() {
+fn an_interrupted_shard_leaves_no_file_and_no_other_process_may_have_it() {
     use nix::sys::signal::Signal;
     let long = GRID.replacen("--steps 300", "--steps 30000", 1);
     let run = Run::of("grid_world");
-    let lines =
-        || fs::read_to_string(run.path("shards/shard-1-of-2.jsonl")).map_or(1, |text| text.lines().count());
     for signal in [Signal::SIGKILL, Signal::SIGTERM] {
-        let before = lines();
         let child = run.starts(&format!("--threads 1 {long} --shard 1/2 --out shards"));
-        wait_until(|| lines() >= before + 2);
+        wait_until(|| run.path("shards/shard-1-of-2.unfinished.jsonl").exists());
         let error = run.refuses(&format!("{long} --shard 1/2 --out shards"));
-        assert!(
-            error.ends_with("another run is writing there; wait for it, or start another shard\n"),
-            "{error}"
-        );
+        assert!(error.contains("another run is writing there; wait for it"), "{error}");
         crate::ending::send(signal, &child);
         let ended = Ended::of(child);
         if signal == Signal::SIGTERM {
             assert_eq!(ended.code, Some(130), "{ended:?}");
-            ended.says(&[" of 12 trials of shard 1/2 are finished; start the shard again to go on\n"]);
+            ended.says(&["interrupted: start shard 1/2 again, nothing of it is kept\n"]);
+            assert_eq!(names(&run.path("shards")), [""; 0]);
         }
+        assert!(!run.path("shards/shard-1-of-2.jsonl").exists());
     }
-    let ended = run.goes_well(&format!("{long} --shard 1/2 --out shards"));
-    ended.says(&["shard 1/2: ", " of 12 trials are finished already"]);
+    let ended = run.goes_well(&format!("{GRID} --shard 1/2 --out shards"));
     assert_eq!(ended.stdout, "shard 1/2 is complete: 12 trials in shards/shard-1-of-2.jsonl\n");
-    start(&run, &long, 2, [2]);
-    assert!(merged(&run) == single(Run::of("grid_world"), &long));
+    let again = run.goes_well(&format!("{GRID} --shard 1/2 --out shards"));
+    assert_eq!(again.stdout, "shard 1/2 is complete already\n");
+    start(&run, GRID, 2, [2]);
+    same::assert_same(&merged(&run), &REFERENCE, "after interruptions");
 }
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_disk_costs_the_trial_in_hand() {
+fn a_full_disk_leaves_no_file() {
     let run = Run::of("grid_world");
     let arguments = format!("--quiet {GRID} --shard 1/2 --out shards");
     // 50 kB: the header and a few trials.
     let ended = run.ends_with_files_up_to(100, &arguments);
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{ended:?}");
-    insta::assert_snapshot!(ended.stderr, @"error: cannot write shards/shard-1-of-2.jsonl: File too large (os error 27); free space, and start the shard again: the trials before are kept");
-    let kept = fs::read_to_string(run.path("shards/shard-1-of-2.jsonl")).unwrap();
-    assert!(kept.ends_with('\n') && (2..12).contains(&kept.lines().count()), "{}", kept.lines().count());
-    start(&run, GRID, 2, 1..=2);
-    assert!(merged(&run) == *REFERENCE);
+    insta::assert_snapshot!(ended.stderr, @"error: cannot write shards/shard-1-of-2.jsonl: File too large (os error 27)");
+    assert_eq!(names(&run.path("shards")), [""; 0]);
 }
 
 #[test]
@@ -111,11 +105,8 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
         assert!(error.contains("must be I/N with I from 1 to N, and N at most 1000"), "{error}");
     }
     start(&run, GRID, 3, [1, 3]);
-    let missing = run.ends("missing shards");
-    assert_eq!((missing.code, missing.stdout.as_str()), (Some(1), "2\n"), "{missing:?}");
-    insta::assert_snapshot!(run.refuses("merge shards"), @"error: shards is not complete: the shards 2 of 3 lack trials, the first is shard-2-of-3.jsonl; run those shards again");
+    insta::assert_snapshot!(run.refuses("merge shards"), @"error: shards is not complete: run --shard I/3 for I = 2, whose files are missing");
     start(&run, GRID, 3, [2]);
-    assert_eq!(run.goes_well("missing shards").stdout, "");
     let files = || {
         let read = |name: String| fs::read(run.path("shards").join(name)).unwrap();
         names(&run.path("shards")).into_iter().map(read).collect::<Vec<_>>()
@@ -125,15 +116,13 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
         run.refuses(&format!("{GRID} --shard 1/4 --out shards")),
         run.refuses(&format!("{GRID} --max-steps 7 --shard 1/3 --out shards")),
         run.refuses("merge nowhere"),
-        run.refuses("status nowhere"),
-        run.refuses("missing ."),
+        run.refuses("merge ."),
     ];
     insta::assert_snapshot!(refusals.concat(), @"
     error: shards/shard-1-of-3.jsonl: this shard is one of 3 shards, not of 4; give another folder by --out
     error: shards/shard-1-of-3.jsonl: this shard is of the experiment `--generate 2 --strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --seed 100`, not `--generate 2 --strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --max-steps 7 --seed 100`; give another folder by --out
     error: cannot read nowhere: No such file or directory (os error 2)
-    error: cannot read nowhere: No such file or directory (os error 2)
-    error: .: this folder has no shard with a finished line
+    error: .: this folder has no complete shard
     ");
     for (arguments, says) in [
         ("--shard 1/3 --generate 1 --save-worlds", "cannot be used with"),
@@ -143,13 +132,11 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
         assert!(message.contains(says), "{arguments}: {message}");
     }
     assert!(files() == before);
-    // A line edited by hand, and a file of another version.
+    // A line edited by hand.
     let path = run.path("shards/shard-3-of-3.jsonl");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replacen("\"seed\":100", "\"seed\":101", 1)).unwrap();
-    let edited = run.refuses("merge shards");
-    assert_eq!(run.refuses(&format!("{GRID} --shard 3/3 --out shards")), edited);
-    insta::assert_snapshot!(edited, @"error: shards/shard-3-of-3.jsonl: line 2 is not as it was written: it was edited, or is of another experiment; remove the file, and run its shard again");
+    insta::assert_snapshot!(run.refuses("merge shards"), @"error: shards/shard-3-of-3.jsonl: line 2 is not the trial that belongs there; remove the file, and run its shard again");
     assert_eq!(names(&run.path("shards")).len(), 3, "no result is written");
 }
 

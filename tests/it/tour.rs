@@ -48,14 +48,3 @@ fn a_tour_of_ones_own_ends_the_run() {
     assert_eq!(summary.number("/goals/reached"), 2.0);
     assert!((4.0..30.0).contains(&summary.number("/simulated_s")), "{}", summary.number("/simulated_s"));
 }
-
-#[test]
-fn waypoints_out_of_reach_are_reported() {
-    let run = Run::new();
-    run.write("t.toml", "waypoints_m = [[2.0, 3.0], [-1.0, 2.0], [0.0, 0.0]]");
-    let ended = run.goes_well("--quiet --no-rrd --duration 1 --drive tour --tour t.toml");
-    insta::assert_snapshot!(ended.stderr, @"
-    warning: 2 of the 3 waypoints of the tour are in walls or outside of the map of `four rooms`, the first at [-1.0, 2.0]
-      = help: the robot stops at the nearest point that it can reach
-    ");
-}

@@ -1,9 +1,20 @@
 //! Maps drawn by hand: `#` blocked, `.` free, a blank not seen; the top line has the highest y.
 
-use agent::{Agent, AgentSettings, Features, GoalSelector, Policy, Situation, StraightLineTravel, Strategy};
+use agent::{Agent, AgentSettings, Features, GoalSelector, Policy, Situation, Strategy, Travel};
 use interfaces::{Cell, CellReading, CellState, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
+
+/// A robot that flies along straight lines, at one meter per unit of time.
+struct Flight;
+
+impl Travel for Flight {
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        let (frame, from) = (mapper.frame(), pose.translation.vector.into());
+        times.clear();
+        times.extend((0..frame.len()).map(|cell| nalgebra::distance(&frame.center(frame.cell(cell)), &from)));
+    }
+}
 
 /// What a sensor observes at `time`.
 pub(crate) fn reading(time: f64, drawing: &[&str]) -> CellReading {
@@ -59,7 +70,7 @@ pub(crate) fn next(agent: &mut Agent, mapper: &Mapper) -> Cell {
 
 /// The next goal of a robot that flies, at a pose.
 pub(crate) fn next_from(pose: &Isometry2<f64>, agent: &mut Agent, mapper: &Mapper) -> Cell {
-    let goal = agent.next_goal(pose, mapper, &mut StraightLineTravel).unwrap();
+    let goal = agent.next_goal(pose, mapper, &mut Flight).unwrap();
     mapper.frame().cell_at(&goal.position)
 }
 

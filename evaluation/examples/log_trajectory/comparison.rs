@@ -1,6 +1,7 @@
 //! The difference to poses of an earlier estimation, and which of both trajectories makes the sharper map.
 
-use evaluation::metrics::{alignment, quantile};
+use crate::alignment::alignment;
+use evaluation::metrics::quantile;
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::Trajectory;
 use logs::{Log, LogError};

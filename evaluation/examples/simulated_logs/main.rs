@@ -11,11 +11,14 @@
 //! cargo run -p curious-evaluation --example simulated_logs -- FIRST_SEED LOGS [FOLDER]
 //! ```
 
+#[path = "../shared/alignment.rs"]
+mod alignment;
 mod drive;
 mod ghosts;
 
+use alignment::alignment;
 use drive::{LogSpec, SimulatedLog};
-use evaluation::metrics::{alignment, quantile};
+use evaluation::metrics::quantile;
 use files::{UnfinishedFile, make_folder};
 use interfaces::PoseMode;
 use logs::McapWriter;

@@ -38,32 +38,6 @@ pub fn map_scores(mapper: &Mapper, truth: &impl GroundTruth) -> MapScores {
     MapScores { coverage: share(seen), map_quality: share(correct) }
 }
 
-/// The quality of the map on the cells that the robot could see from some pose that it can reach, with doors open, see
-/// [`sim::physics::WorldSpec::visible_cells`]. Both shares are 0 if there is no such cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct ReachableScores {
-    /// The share of these cells that have been seen.
-    pub coverage_reachable: f64,
-    /// The share of these cells, except cells that are partly covered now, whose state in the map is the true state
-    /// now; an unknown cell counts as incorrect.
-    pub map_quality_reachable: f64,
-}
-
-/// Compares the map with the ground truth now, on the cells that are `visible`.
-pub fn reachable_scores(mapper: &Mapper, truth: &impl GroundTruth, visible: &[bool]) -> ReachableScores {
-    let (mut seen, mut correct) = (Mean::default(), Mean::default());
-    for index in (0..visible.len()).filter(|&index| visible[index]) {
-        seen.add_bool(mapper.was_ever_seen(index));
-        if let Some(is_correct) = is_correct(mapper.states().cells()[index], truth.state(index)) {
-            correct.add_bool(is_correct);
-        }
-    }
-    ReachableScores {
-        coverage_reachable: seen.get().unwrap_or(0.0),
-        map_quality_reachable: correct.get().unwrap_or(0.0),
-    }
-}
-
 /// The time since cells were last seen, over the cells that can be seen. A cell that was never seen counts with the
 /// time since the start.
 #[derive(Clone, Copy, Debug, Default, Serialize)]

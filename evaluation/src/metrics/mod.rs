@@ -13,7 +13,6 @@ mod pose;
 mod prediction;
 mod rates;
 mod statistics;
-mod things;
 mod true_chains;
 
 #[cfg(test)]
@@ -22,10 +21,8 @@ mod tests;
 pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use freshness::{Freshness, FreshnessScores};
 pub use latency::{Delays, Latency};
-pub use map::{
-    Age, ChangingAccuracy, ChangingScores, MapScores, ReachableScores, age, map_scores, reachable_scores,
-};
-pub use pose::{PoseErrors, PoseScores, alignment};
+pub use map::{Age, ChangingAccuracy, ChangingScores, MapScores, age, map_scores};
+pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{ForecastScores, Forecasts, Prediction, StateScores};
 pub use rates::{
     IntervalScores, MAX_LOG_ERROR, PassageScores, RateScores, interval_scores, log_error, mean_log_error,
@@ -33,5 +30,4 @@ pub use rates::{
 };
 pub(crate) use statistics::Mean;
 pub use statistics::{ProbabilityScores, quantile};
-pub use things::{ThingReport, Things};
 pub use true_chains::TrueChains;

@@ -113,11 +113,6 @@ impl ProbabilityScores {
         self.excess.iter_mut().zip(other.excess).for_each(|(excess, other)| *excess += other);
     }
 
-    /// The number of predictions.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
     /// The Brier score: the mean of (prediction − truth)².
     pub fn brier(&self) -> Option<f64> {
         self.mean(self.squares)
@@ -168,7 +163,6 @@ mod probability_tests {
         more.add(0.0, true);
         scores.merge(&more);
         let squares: f64 = 0.12 * 0.12 + 0.82 * 0.82 + 0.25 + 1.0;
-        assert_eq!(scores.count(), 4);
         assert!((scores.brier().unwrap() - squares / 4.0).abs() < 1e-12);
         // The classes from 0 and from 0.1 on are apart.
         assert!((scores.calibration_error().unwrap() - (1.0 + 0.7 + 0.5) / 4.0).abs() < 1e-12);

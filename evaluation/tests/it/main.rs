@@ -1,5 +1,7 @@
 //! Trials in simulated worlds: sensors, sessions and schedules. One binary, because linking takes longer than compiling.
 
+#[path = "../../examples/shared/alignment.rs"]
+mod alignment;
 mod glass;
 mod known_things;
 mod scan_filter;

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::{self, Debug, Display, Formatter};
 use std::io::Write;
 use std::str::FromStr;
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::Xxh3;
 
 /// The largest number of shards: the index of an array of jobs in Slurm is at most 1000, unless it is configured, and
 /// merging opens every file.
@@ -40,19 +40,9 @@ impl Shard {
         self.count
     }
 
-    /// All shards of the same experiment.
-    pub(super) fn all(self) -> impl Iterator<Item = Self> {
-        (1..=self.count).map(move |number| Self { number, ..self })
-    }
-
     /// Whether the trial with a number, from 1 on, belongs to the shard.
     pub fn has(self, trial: u64) -> bool {
         trial % self.count == self.number % self.count
-    }
-
-    /// The number of its trials in an experiment of `trials`.
-    pub fn trials(self, trials: u64) -> u64 {
-        (trials + self.count - self.number) / self.count
     }
 
     /// The name of the file of the shard.
@@ -94,7 +84,7 @@ pub fn array(numbers: &[u64]) -> String {
 }
 
 /// The version of the format of the files of shards.
-const SCHEMA: u32 = 3;
+const SCHEMA: u32 = 4;
 
 /// The first line of the file of a shard: what all shards of an experiment have in common, and the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -142,11 +132,6 @@ impl Header {
         }
     }
 
-    /// The key of the hashes of the lines: a line of another experiment does not match.
-    pub(super) fn key(&self) -> u64 {
-        xxh3_64(format!("{} {} {}", self.program, self.version, self.settings).as_bytes())
-    }
-
     /// What differs from the experiment of `other`; `None` if it is the same.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let named = |header: &Self| {
@@ -181,8 +166,6 @@ mod tests {
                 assert_eq!(shards.iter().filter(|shard| shard.has(trial)).count(), 1);
             }
             for shard in shards {
-                let own = (1..=trials).filter(|trial| shard.has(*trial)).count();
-                assert_eq!(shard.trials(trials), own as u64, "{shard} of {trials}");
                 assert_eq!(Shard::of_file_name(&shard.file_name()), Some(shard));
             }
         }

@@ -135,7 +135,7 @@ pub struct TrialArgs<K: TrialKind> {
     threads: Option<u16>,
 
     /// Run shard I of N: every N-th trial, into a file of its own in --out. Run shards 1/N to N/N on any machines, then
-    /// `merge`. A shard that is started again continues where it stopped
+    /// `merge`. The file is there when the shard is complete
     #[arg(long, value_name = "I/N", conflicts_with = "save_worlds", help_heading = EXECUTION)]
     shard: Option<Shard>,
 
@@ -203,7 +203,6 @@ fn after_help<K: TrialKind>() -> String {
         "Examples:\n  {}\n\n\
          Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
          {name} --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
-         {name} status big\n  \
          {name} merge big                               # the same files as without shards\n\n\
          Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
          finished trials are reported).",

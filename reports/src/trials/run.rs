@@ -60,7 +60,7 @@ impl<K: TrialKind> TrialArgs<K> {
         let settings = ReportSettings { interrupted, ..report_settings(experiment, arguments) };
         settings.sort(&mut trials);
         let results = Results { folder, out: &self.out, world_names: &self.world, quiet: self.quiet };
-        results.write(settings, trials.into_iter().map(Ok), &experiment.worlds)?;
+        results.write(settings, &trials, &experiment.worlds)?;
         Ok(if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
     }
 
@@ -127,10 +127,10 @@ impl Results<'_> {
     pub(super) fn write<W: Displayed>(
         self,
         settings: ReportSettings,
-        trials: impl Iterator<Item = anyhow::Result<Trial>>,
+        trials: &[Trial],
         worlds: &[W],
     ) -> Result<(), Failure> {
-        let report = collect(settings, self.folder.unfinished(), trials)?;
+        let report = collect::<anyhow::Error>(settings, self.folder.unfinished(), trials)?;
         let written = report.write(&self.folder, worlds).map_err(anyhow::Error::from)?;
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
         self.folder.finish(&inputs)?;
@@ -150,22 +150,10 @@ impl Results<'_> {
 /// What can be done with a folder of shards.
 #[derive(Clone, Debug, Subcommand)]
 pub(super) enum ShardCommand {
-    /// Print the shards that are not complete, as `sbatch --array` reads them; exit code 1 if there are any
-    ///
-    /// The output is one line, as in 2,5-7, or nothing if all shards are complete. To run those shards again:
-    ///
-    ///   sbatch --array=$(PROGRAM missing DIR) shards.sh
-    ///
-    /// A shard that is started again goes on where it ended. While shards run they count as not complete.
-    #[command(verbatim_doc_comment)]
-    Missing {
-        /// The folder of the shards
-        dir: PathBuf,
-    },
     /// Write the results of all shards: the same files, byte by byte, as those of a run without shards
     ///
-    /// The shards must be complete, of one experiment, and of this build of the program; otherwise the file with the
-    /// problem is named, and nothing is written. World files must be where they were when the shards ran. The files of
+    /// All shards must be there, of one experiment, and of this build of the program; otherwise the file with the
+    /// problem, or the missing shards are named, and nothing is written. World files must be where they were when the shards ran. The files of
     /// the shards stay.
     Merge {
         /// The folder of the shards
@@ -179,26 +167,13 @@ pub(super) enum ShardCommand {
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Print what is finished; also while shards run
-    Status {
-        /// The folder of the shards
-        dir: PathBuf,
-    },
 }
 
 impl ShardCommand {
     /// Carries out the subcommand.
     pub(super) fn run<K: TrialKind>(&self) -> Result<ExitCode, Failure> {
-        match self {
-            Self::Missing { dir } => {
-                if let Some(missing) = Shards::read(dir).map_err(input)?.missing() {
-                    print_lines(missing)?;
-                    return Ok(ExitCode::FAILURE);
-                }
-            }
-            Self::Merge { dir, out, quiet } => merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?,
-            Self::Status { dir } => print_lines(Shards::read(dir).map_err(input)?.status())?,
-        }
+        let Self::Merge { dir, out, quiet } = self;
+        merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?;
         Ok(ExitCode::SUCCESS)
     }
 }
@@ -217,10 +192,11 @@ fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failur
     }
     let arguments = found.arguments.clone();
     let settings = report_settings(&experiment, arguments);
+    let mut trials = shards.trials(&experiment).map_err(input)?;
+    settings.sort(&mut trials);
     let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
     let results = Results { folder, out, world_names: &args.world, quiet };
-    let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));
-    results.write(settings, trials, &experiment.worlds)
+    results.write(settings, &trials, &experiment.worlds)
 }
 
 /// The header of the files of the shards of an experiment.
@@ -230,7 +206,7 @@ fn header<K: TrialKind>(arguments: Vec<String>, shard: Shard, experiment: &Exper
 }
 
 impl<K: TrialKind> TrialArgs<K> {
-    /// Runs the trials of a shard that are not finished yet.
+    /// Runs the trials of a shard, unless it is complete.
     pub(super) fn run_shard(
         &self,
         shard: Shard,
@@ -238,25 +214,26 @@ impl<K: TrialKind> TrialArgs<K> {
         is_canceled: &AtomicBool,
     ) -> Result<ExitCode, Failure> {
         let header = header::<K>(experiment_arguments::<K>(), shard, experiment);
-        let file = ShardFile::open(&self.out, &header).map_err(input)?;
-        let (all, open) = (shard.trials(header.trials), file.open_trials(experiment));
-        let before = all - open.len() as u64;
-        if !self.quiet && before > 0 {
-            say(stderr(), format_args!("shard {shard}: {before} of {all} trials are finished already"));
-        }
-        let progress = Progress::of_count(open.len(), "trials", self.quiet);
-        let finished = self.pool()?.install(|| file.run(open, is_canceled, || progress.step()));
+        let Some(file) = ShardFile::open(&self.out, &header).map_err(input)? else {
+            if !self.quiet {
+                print(format_args!("shard {shard} is complete already"))?;
+            }
+            return Ok(ExitCode::SUCCESS);
+        };
+        let mut jobs = experiment.jobs();
+        jobs.retain(|trial| shard.has(trial.number));
+        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
+        let run = || experiment.run(jobs, is_canceled, |_| progress.step());
+        let trials = self.pool()?.install(run).map_err(anyhow::Error::from)?;
         drop(progress);
-        let finished = before + finished.map_err(anyhow::Error::from)?;
-        file.sync().context("start the shard again")?;
-        if finished < all {
-            let again = "start the shard again to go on";
-            let done = format_args!("{finished} of {all} trials of shard {shard} are finished");
-            say(stderr(), format_args!("interrupted: {done}; {again}"));
+        if is_canceled.load(Ordering::Relaxed) {
+            say(stderr(), format_args!("interrupted: start shard {shard} again, nothing of it is kept"));
             return Ok(ExitCode::from(INTERRUPTED));
         }
+        let path = file.path.clone();
+        file.write(&trials).map_err(anyhow::Error::from)?;
         if !self.quiet {
-            print(format_args!("shard {shard} is complete: {all} trials in {}", file.path.display()))?;
+            print(format_args!("shard {shard} is complete: {} trials in {}", trials.len(), path.display()))?;
         }
         Ok(ExitCode::SUCCESS)
     }

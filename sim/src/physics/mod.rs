@@ -28,7 +28,6 @@ mod spec;
 #[cfg(test)]
 mod tests;
 mod things;
-mod visible_cells;
 mod world;
 
 pub use box_tree::BoxTree;

@@ -1,7 +1,6 @@
 //! Arguments → parts → loop → results.
 
 mod args;
-mod combination;
 mod output;
 mod parts;
 

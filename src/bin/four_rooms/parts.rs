@@ -1,7 +1,6 @@
 //! Arguments → the parts of a run.
 
 use crate::args::{Args, DriveChoice};
-use crate::combination;
 use agent::Agent;
 use anyhow::{Context, anyhow};
 use cli::flags::value_of;
@@ -49,7 +48,6 @@ impl Parts {
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
         settings.pose = args.pose.unwrap_or(settings.pose);
-        warn(combination::odometry(&spec, settings.pose));
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
     }
@@ -101,7 +99,6 @@ impl Parts {
             }
         };
         let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
-        warn(combination::waypoints(&self.spec, &waypoints));
         if let Some((_, to_own)) = self.own_frame(args) {
             waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
         }
@@ -149,8 +146,15 @@ fn known_map(path: &Path, spec: &WorldSpec) -> Result<Grid<CellState>, Failure> 
     let map = ros_map::read(path, &Disk, &mut findings);
     warn(findings.messages(Severity::Warning));
     let map = map.ok_or_else(|| input(anyhow!(findings.error_text())))?;
-    warn(combination::map(spec, &map).map_err(|why| input(anyhow!("{}: {why}", path.display())))?);
-    Ok(map.onto(&spec.frame))
+    let known = map.onto(&spec.frame);
+    if known.cells().iter().all(|state| *state == CellState::Unknown) {
+        return Err(input(anyhow!(
+            "{}: the map shows nothing of the world `{}`: check `origin` and `resolution`",
+            path.display(),
+            spec.name
+        )));
+    }
+    Ok(known)
 }
 
 fn warn(warnings: impl IntoIterator<Item = String>) {

@@ -8,18 +8,16 @@
 //! radius_m = 1.5   # 1 without it
 //! ```
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
-use serde::Deserialize;
-use std::collections::BTreeMap;
+use anyhow::{Context, Result, anyhow, bail};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use survey::PlaceName;
-use toml::Spanned;
 
 /// The largest distance of a place from its point, if the file gives none, m.
 const RADIUS_M: f64 = 1.0;
-const RADII_M: RangeInclusive<f64> = 0.05..=100.0;
-const COORDINATES_M: RangeInclusive<f64> = -1e6..=1e6;
 const MAX_LETTERS: usize = 60;
 /// The longest file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
@@ -33,72 +31,59 @@ struct File {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
-    name: Spanned<String>,
-    x_m: Spanned<f64>,
-    y_m: Spanned<f64>,
-    radius_m: Option<Spanned<f64>>,
+    #[serde(deserialize_with = "name")]
+    name: String,
+    #[serde(deserialize_with = "coordinate")]
+    x_m: f64,
+    #[serde(deserialize_with = "coordinate")]
+    y_m: f64,
+    #[serde(deserialize_with = "radius", default = "default_radius")]
+    radius_m: f64,
+}
+
+fn name<'a, D: Deserializer<'a>>(from: D) -> Result<String, D::Error> {
+    let name = String::deserialize(from)?.trim().to_owned();
+    let letters = name.chars().count();
+    let why =
+        || D::Error::custom(format!("a name has 1 to {MAX_LETTERS} letters, and this one has {letters}"));
+    (1..=MAX_LETTERS).contains(&letters).then_some(name).ok_or_else(why)
+}
+
+fn coordinate<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+    number(from, -1e6..=1e6)
+}
+
+fn radius<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+    number(from, 0.05..=100.0)
+}
+
+fn default_radius() -> f64 {
+    RADIUS_M
+}
+
+fn number<'a, D: Deserializer<'a>>(from: D, range: RangeInclusive<f64>) -> Result<f64, D::Error> {
+    let (found, [low, high]) = (f64::deserialize(from)?, [range.start(), range.end()]);
+    let why = || D::Error::custom(format!("must be a number from {low} to {high} m, and not {found}"));
+    range.contains(&found).then_some(found).ok_or_else(why)
 }
 
 /// The names in a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<PlaceName>> {
     let text = files::read_text(path, MAX_BYTES)
         .with_context(|| format!("--places {}: cannot read it", path.display()))?;
-    names(&path.display().to_string(), &text)
+    names(&text).with_context(|| path.display().to_string())
 }
 
-fn names(file: &str, text: &str) -> Result<Vec<PlaceName>> {
-    let line_of =
-        |at: usize| 1 + text.as_bytes()[..at.min(text.len())].iter().filter(|byte| **byte == b'\n').count();
+fn names(text: &str) -> Result<Vec<PlaceName>> {
     let File { place: entries } = toml::from_str(text).map_err(|error| {
-        let line = line_of(error.span().map_or(0, |span| span.start));
-        anyhow!(
-            "{file}, line {line}{}: {}",
-            key(text, line),
-            error.message().replace('\n', ", ").replace("expected f64", "expected a number")
-        )
+        anyhow!(error.to_string().trim_end().replace("expected f64", "expected a number"))
     })?;
-    let mut lines = BTreeMap::new();
-    for Entry { name, .. } in &entries {
-        let line = line_of(name.span().start);
-        let letters = name.get_ref().trim().chars().count();
-        ensure!(
-            (1..=MAX_LETTERS).contains(&letters),
-            "{file}, line {line}, `name`: a name has 1 to {MAX_LETTERS} letters, and this one has {letters}"
-        );
-        if let Some(other) = lines.insert(name.get_ref().trim(), line) {
-            bail!(
-                "{file}, line {line}, `name`: the place in line {other} has the same name; give each its own"
-            );
-        }
+    let mut names = BTreeSet::new();
+    if let Some(Entry { name, .. }) = entries.iter().find(|entry| !names.insert(&entry.name)) {
+        bail!("two places have the `name` {name:?}: give each its own");
     }
-    let number = |key: &str, value: &Spanned<f64>, range: RangeInclusive<f64>| {
-        let (line, found) = (line_of(value.span().start), *value.get_ref());
-        ensure!(
-            range.contains(&found),
-            "{file}, line {line}, `{key}`: must be a number from {} to {} m, and not {found}",
-            range.start(),
-            range.end()
-        );
-        Ok(found)
-    };
-    let name = |entry: &Entry| {
-        Ok(PlaceName {
-            name: entry.name.get_ref().trim().to_owned(),
-            x_m: number("x_m", &entry.x_m, COORDINATES_M)?,
-            y_m: number("y_m", &entry.y_m, COORDINATES_M)?,
-            radius_m: match &entry.radius_m {
-                Some(radius_m) => number("radius_m", radius_m, RADII_M)?,
-                None => RADIUS_M,
-            },
-        })
-    };
-    entries.iter().map(name).collect()
-}
-
-/// The key in a line, for an error.
-fn key(text: &str, line: usize) -> String {
-    let key = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(key, _)| key.trim());
-    key.map(|key| format!(", `{key}`")).unwrap_or_default()
+    let place = |Entry { name, x_m, y_m, radius_m }: Entry| PlaceName { name, x_m, y_m, radius_m };
+    Ok(entries.into_iter().map(place).collect())
 }
 
 #[cfg(test)]
@@ -108,23 +93,64 @@ mod tests {
     #[test]
     fn names_have_a_point_and_a_radius() {
         let text = "[[place]]\nname = \" Kitchen \"\nx_m = 3\ny_m = -1.5\n\n[[place]]\nname = \"Door\"\nx_m = 0\ny_m = 0\nradius_m = 2\n";
-        let found = names("places.toml", text).unwrap();
+        let found = names(text).unwrap();
         assert_eq!(found[0], PlaceName { name: "Kitchen".to_owned(), x_m: 3.0, y_m: -1.5, radius_m: 1.0 });
         assert_eq!((&found[1].name[..], found[1].radius_m, found.len()), ("Door", 2.0, 2));
     }
 
     #[test]
-    fn errors_name_file_line_and_key() {
-        let error =
-            |lines: &str| names("places.toml", &format!("[[place]]\n{lines}")).unwrap_err().to_string();
-        insta::assert_snapshot!(error("name = \"a\"\nx = 1\ny_m = 2\n"), @"places.toml, line 3, `x`: unknown field `x`, expected one of `name`, `x_m`, `y_m`, `radius_m`");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = \"1\"\ny_m = 2\n"), @r#"places.toml, line 3, `x_m`: invalid type: string "1", expected a number"#);
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\n"), @"places.toml, line 1: missing field `y_m`");
-        insta::assert_snapshot!(error("name = \"a\nx_m = 1\n"), @r#"places.toml, line 2, `name`: invalid basic string, expected `"`"#);
-        insta::assert_snapshot!(error("name = \" \"\nx_m = 1\ny_m = 2\n"), @"places.toml, line 2, `name`: a name has 1 to 60 letters, and this one has 0");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = inf\ny_m = 2\n"), @"places.toml, line 3, `x_m`: must be a number from -1000000 to 1000000 m, and not inf");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\nradius_m = 0\n"), @"places.toml, line 5, `radius_m`: must be a number from 0.05 to 100 m, and not 0");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\n[[place]]\nname = \"a\"\nx_m = 1\ny_m = 2\n"), @"places.toml, line 6, `name`: the place in line 2 has the same name; give each its own");
-        insta::assert_snapshot!(names("places.toml", "").unwrap_err().to_string(), @"places.toml, line 1: missing field `place`");
+    fn errors_show_the_line_and_say_what_is_right() {
+        let error = |lines: &str| names(&format!("[[place]]\n{lines}")).unwrap_err().to_string();
+        insta::assert_snapshot!(error("name = \"a\"\nx = 1\ny_m = 2\n"), @"
+        TOML parse error at line 3, column 1
+          |
+        3 | x = 1
+          | ^
+        unknown field `x`, expected one of `name`, `x_m`, `y_m`, `radius_m`
+        ");
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = \"1\"\ny_m = 2\n"), @r#"
+        TOML parse error at line 3, column 7
+          |
+        3 | x_m = "1"
+          |       ^^^
+        invalid type: string "1", expected a number
+        "#);
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\n"), @"
+        TOML parse error at line 1, column 1
+          |
+        1 | [[place]]
+          | ^^^^^^^^^
+        missing field `y_m`
+        ");
+        insta::assert_snapshot!(error("name = \"a\nx_m = 1\n"), @r#"
+        TOML parse error at line 2, column 10
+          |
+        2 | name = "a
+          |          ^
+        invalid basic string, expected `"`
+        "#);
+        insta::assert_snapshot!(error("name = \" \"\nx_m = 1\ny_m = 2\n"), @r#"
+        TOML parse error at line 2, column 8
+          |
+        2 | name = " "
+          |        ^^^
+        a name has 1 to 60 letters, and this one has 0
+        "#);
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = inf\ny_m = 2\n"), @"
+        TOML parse error at line 3, column 7
+          |
+        3 | x_m = inf
+          |       ^^^
+        must be a number from -1000000 to 1000000 m, and not inf
+        ");
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\nradius_m = 0\n"), @"
+        TOML parse error at line 5, column 12
+          |
+        5 | radius_m = 0
+          |            ^
+        must be a number from 0.05 to 100 m, and not 0
+        ");
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\n[[place]]\nname = \" a\"\nx_m = 1\ny_m = 2\n"), @r#"two places have the `name` "a": give each its own"#);
+        assert!(names("").unwrap_err().to_string().ends_with("missing field `place`"));
     }
 }

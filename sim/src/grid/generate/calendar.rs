@@ -76,7 +76,7 @@ impl GridSpec {
 /// The world of a seed, whose name begins with that of its kind.
 fn building(kind: &str, ranges: &Ranges, calendar: BuildingCalendar, step_s: f64, seed: u64) -> GridSpec {
     let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
-    let [width, height] = ranges.size.map(|size| between(&mut rng, size, 9..=1000));
+    let [width, height] = ranges.size.map(|size| between(&mut rng, size));
     let frame = frame(width, height);
     let start = Cell::new(width / 2, height / 2);
     let settings =
@@ -86,7 +86,7 @@ fn building(kind: &str, ranges: &Ranges, calendar: BuildingCalendar, step_s: f64
     if ranges.has_doors {
         drawn.doors(&mut rng);
     }
-    for _ in 0..between(&mut rng, ranges.things, 0..=1000) {
+    for _ in 0..between(&mut rng, ranges.things) {
         drawn.thing(&mut rng);
     }
     let (blocks, place) = (drawn.blocks, kind.trim_start_matches("calendar-"));

@@ -11,13 +11,12 @@ use interfaces::{Cell, Grid, GridFrame, Purpose, RandomStream};
 use nalgebra::Point2;
 use paths::BlockPath;
 use rand::RngExt;
-use std::ops::RangeInclusive;
 
 /// The maximum number of maps that are drawn until a map has room for all blocks.
 const MAX_MAPS: usize = 20;
 
-/// Settings of random worlds. A pair is the smallest and the largest value, both included; each world draws its own
-/// value between them. A pair in the wrong order is swapped, and values out of range are limited to the range.
+/// Settings of random worlds. A pair is the smallest and the largest value, both included and within the given range; each world
+/// draws its own value between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GenerateSettings {
     /// Columns, outer walls included; 9 to 1000.
@@ -62,9 +61,13 @@ impl GridSpec {
     /// A random world, named `generated-` and the seed: an outer wall, inner walls with openings, free-standing
     /// walls, blocks with paths that do not touch each other, the robot in the center. All free cells are
     /// connected. The same settings and seed give the same world, on every machine.
+    ///
+    /// # Panics
+    ///
+    /// When a pair is in the wrong order.
     pub fn generate(settings: &GenerateSettings, seed: u64) -> Self {
         let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
-        let wanted = between(&mut rng, settings.blocks, 0..=1000) as usize;
+        let wanted = between(&mut rng, settings.blocks) as usize;
         let mut best = draw(settings, wanted, seed, &mut rng);
         for _ in 1..MAX_MAPS {
             if best.blocks.len() == wanted {
@@ -81,7 +84,7 @@ impl GridSpec {
 
 /// A world with the `wanted` number of blocks, or with as many as there is room for.
 fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomStream) -> GridSpec {
-    let (width, height) = (between(rng, settings.width, 9..=1000), between(rng, settings.height, 9..=1000));
+    let (width, height) = (between(rng, settings.width), between(rng, settings.height));
     let frame = frame(width, height);
     let start = Cell::new(width / 2, height / 2);
     let walls = rooms::walls(settings, frame, start, rng);
@@ -94,7 +97,7 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomS
         walls,
         blocks,
         start,
-        sensor_radius: settings.sensor_radius.clamp(1, GridSpec::MAX_SENSOR_RADIUS),
+        sensor_radius: settings.sensor_radius,
         block_probability: 1.0,
         robot_probability: 1.0,
         calendar: None,
@@ -102,7 +105,7 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomS
 }
 
 fn block(settings: &GenerateSettings, number: usize, path: BlockPath, rng: &mut RandomStream) -> BlockSpec {
-    let (low, high) = cut(settings.dwell, 1..=BlockSpec::MAX_DWELL);
+    let [low, high] = settings.dwell;
     let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);
     let dwell = (libm::exp(log_dwell) as u32).clamp(low, high);
@@ -118,15 +121,8 @@ fn frame(width: i32, height: i32) -> GridFrame {
 }
 
 /// A random number between the two of a setting.
-fn between(rng: &mut RandomStream, pair: [u32; 2], valid: RangeInclusive<u32>) -> i32 {
-    let (low, high) = cut(pair, valid);
+fn between(rng: &mut RandomStream, [low, high]: [u32; 2]) -> i32 {
     rng.random_range(low..=high) as i32
-}
-
-/// A setting in ascending order, limited to its range.
-fn cut([a, b]: [u32; 2], valid: RangeInclusive<u32>) -> (u32, u32) {
-    let cut = |value: u32| value.clamp(*valid.start(), *valid.end());
-    (cut(a.min(b)), cut(a.max(b)))
 }
 
 /// Whether a cell and the eight around it are all free of walls.

@@ -2,7 +2,7 @@
 //! there is at least one cell.
 
 use super::super::spec::Course;
-use super::{GenerateSettings, cut};
+use super::GenerateSettings;
 use interfaces::{Cell, Grid, RandomStream};
 use rand::RngExt;
 
@@ -41,7 +41,7 @@ pub(super) fn paths(
 /// bends that never crosses itself.
 fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<BlockPath> {
     let kind = rng.random_range(0..3_usize);
-    let (low, high) = cut(settings.path_cells, 2..=1000);
+    let [low, high] = settings.path_cells;
     let first = open.frame().cell(rng.random_range(0..open.frame().len()));
     let (cells, course) = match kind {
         0 => (line(first, rng.random_range(low..=high), rng), Course::BackAndForth),

@@ -27,10 +27,10 @@ pub(super) fn walls(
     for cell in cells(rooms[0]) {
         walls.set(cell, false);
     }
-    for _ in 0..between(rng, settings.walls, 0..=1000) {
+    for _ in 0..between(rng, settings.walls) {
         (0..MAX_TRIES).any(|_| divide(settings, &mut walls, &mut rooms, start, rng));
     }
-    for _ in 0..between(rng, settings.pillars, 0..=1000) {
+    for _ in 0..between(rng, settings.pillars) {
         (0..MAX_TRIES).any(|_| pillar(&mut walls, start, rng));
     }
     walls
@@ -62,7 +62,7 @@ fn divide(
         return false;
     }
     for _ in 0..rng.random_range(1..=2) {
-        let width = between(rng, settings.opening, 1..=100) as usize;
+        let width = between(rng, settings.opening) as usize;
         let width = width.min(wall.len());
         let first = rng.random_range(0..=wall.len() - width);
         // The second opening may overlap the first one.
@@ -86,7 +86,7 @@ fn divide(
 
 /// Adds a short straight wall that touches nothing, if there is room at a random position.
 fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut RandomStream) -> bool {
-    let length = between(rng, PILLAR, 1..=100);
+    let length = between(rng, PILLAR);
     let frame = *walls.frame();
     let first = frame.cell(rng.random_range(0..frame.len()));
     let (dx, dy) = if rng.random() { (1, 0) } else { (0, 1) };

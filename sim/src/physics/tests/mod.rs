@@ -3,13 +3,13 @@
 
 mod caster;
 mod energy;
+mod free_space;
 mod grip;
 mod mixed;
 mod moved;
 mod oracle;
 mod sliding;
 mod specs;
-mod visible;
 
 use super::*;
 use specs::{busy, crowd, four_rooms, heap, reckless, rooms};

@@ -1,6 +1,6 @@
 //! The description of a grid world.
 
-use super::{Content, GRID_WORLD, calendar};
+use super::{Content, calendar};
 use evaluation::scenes::Displayed;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
@@ -33,7 +33,7 @@ pub(super) fn content(world: &GridSpec) -> Content {
         ("calendar", format!("{starts}, steps of {} s", steps.step_s))
     }));
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
-    Content { kind: GRID_WORLD, description: world.description.to_owned(), lines, scene: world.scene() }
+    Content { kind: "grid world", description: world.description.to_owned(), lines, scene: world.scene() }
 }
 
 /// The name, the path and the dwell time of a block.

@@ -3,7 +3,6 @@
 mod calendar;
 mod grid;
 mod physics;
-mod runs;
 #[cfg(test)]
 mod tests;
 
@@ -17,9 +16,6 @@ use std::path::Path;
 use worldfile::floor_plan::FloorPlan;
 use worldfile::physics::to_toml;
 use worldfile::{Disk, Files, Findings, MAX_TEXT_BYTES, Severity, ros_map, shipped};
-
-const GRID_WORLD: &str = "grid world";
-const FLOOR_PLAN: &str = "floor plan";
 
 /// The result for one file.
 #[derive(Clone, Debug, Default)]
@@ -43,8 +39,7 @@ pub(crate) struct Content {
     pub(crate) kind: &'static str,
     /// The description in the file; can be empty.
     pub(crate) description: String,
-    /// One line per part of the world: the name of the part, and its description; at the end, the program that runs
-    /// the file.
+    /// One line per part of the world: the name of the part, and its description.
     pub(crate) lines: Vec<(&'static str, String)>,
     /// The world from above; its title is the name of the world.
     pub(crate) scene: Scene,
@@ -71,14 +66,6 @@ pub(crate) fn inspect(name: &str) -> Inspection {
         },
     };
     inspection.file = printable(name).into_owned();
-    if let Some(Content { kind, lines, .. }) = &mut inspection.content {
-        let command = match *kind {
-            GRID_WORLD => runs::in_grid_world(name),
-            FLOOR_PLAN => format!("four_rooms --map {}", inspection.file),
-            _ => runs::in_four_rooms(name),
-        };
-        lines.push(("runs in", command));
-    }
     inspection
 }
 

@@ -1,6 +1,6 @@
 //! The description of physics worlds and floor plans.
 
-use super::{Content, FLOOR_PLAN, calendar};
+use super::{Content, calendar};
 use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use interfaces::{GridFrame, printable};
@@ -55,7 +55,7 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     let bitmap = &plan.bitmap;
     let name = printable(&path.file_stem().unwrap_or_default().to_string_lossy()).into_owned();
     Some(Content {
-        kind: FLOOR_PLAN,
+        kind: "floor plan",
         description: String::new(),
         lines: vec![
             ("size", format!("{} × {} m", short(size.x), short(size.y))),

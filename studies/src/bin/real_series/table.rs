@@ -24,7 +24,7 @@ impl<'a> Table<'a> {
         let mut sums: BTreeMap<_, (Vec<f64>, f64)> = BTreeMap::new();
         let mut clock = ProbabilityScores::default();
         for case in cases {
-            for horizon in (0..HORIZONS.len()).filter(|horizon| case.scores[0][*horizon].count() > 0) {
+            for horizon in (0..HORIZONS.len()).filter(|horizon| case.scores[0][*horizon].brier().is_some()) {
                 let (sum, n) = sums
                     .entry((case.series.set(), case.looks, horizon))
                     .or_insert_with(|| (vec![0.0; models.len()], 0.0));

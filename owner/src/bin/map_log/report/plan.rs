@@ -1,6 +1,6 @@
 //! The plan of the place: turned so that its walls are upright, and parts of it.
 
-use super::labels::{Mark, RADIUS, Rectangle, drawn, labels};
+use super::labels::{Mark, Rectangle, drawn, labels};
 use super::{hex, number};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -8,7 +8,7 @@ use draw::canvas::png_of_palette;
 use draw::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use draw::palette;
 use draw::scene::span;
-use interfaces::{Cell, CellState};
+use interfaces::Cell;
 use mapper::Mapper;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
@@ -153,11 +153,11 @@ impl<'a> Plan<'a> {
     pub(super) fn draw(&self, layer: Layer, marks: &[Mark], what: &str) -> Markup {
         let size = self.drawing();
         let rectangles: Vec<Rectangle> = marks.iter().map(|mark| self.rectangle(&mark.points)).collect();
-        let found = labels(&rectangles, size - Vector2::new(0.0, BELOW), |at| self.covered(at));
+        let found = labels(&rectangles, size - Vector2::new(0.0, BELOW));
         html! {
             svg.plan viewBox={ "0 0 " (number(size.x)) " " (number(size.y)) } role="img" aria-label=(what) font-family="sans-serif" {
                 (self.cells(layer))
-                @for ((mark, rectangle), label) in marks.iter().zip(&rectangles).zip(&found) { (drawn(mark, rectangle, label.as_ref())) }
+                @for ((mark, rectangle), label) in marks.iter().zip(&rectangles).zip(&found) { (drawn(mark, rectangle, label)) }
                 (self.scale_bar([self.margin, size.y - 12.0]))
                 (self.axis("x", 0.0, &size)) (self.axis("y", FRAC_PI_2, &size))
             }
@@ -171,27 +171,6 @@ impl<'a> Plan<'a> {
         let half = (high - low + cell).sup(&Vector2::repeat(LEAST_SIDE_M * self.scale)) / 2.0;
         let middle = nalgebra::center(&low, &high);
         [middle - half, middle + half]
-    }
-
-    /// The share of a label at a point of the drawing under which something blocks or changes; free space counts a little.
-    fn covered(&self, at: &Point2<f64>) -> f64 {
-        let steps = || (-4..=4).map(|step| RADIUS * f64::from(step) / 4.0);
-        let around = steps().flat_map(|x| steps().map(move |y| Vector2::new(x, y)));
-        let (frame, turned) = (self.mapper.frame(), interfaces::rotation(-self.turn_rad));
-        let hidden = |off: Vector2<f64>| {
-            let from = (at + off - Vector2::repeat(self.margin)).coords / self.scale;
-            let point = turned * (self.low + Vector2::new(from.x, self.size.y - from.y));
-            frame.index(frame.cell_at(&point)).map_or(0.0, |index| {
-                match self.mapper.states().cells()[index] {
-                    _ if self.mapper.rate(index) > 0.0 => 1.0,
-                    CellState::Blocked => 1.0,
-                    CellState::Free => 0.05,
-                    CellState::Unknown => 0.0,
-                }
-            })
-        };
-        let shares: Vec<f64> = around.filter(|off| off.norm() <= RADIUS).map(hidden).collect();
-        shares.iter().sum::<f64>() / shares.len() as f64
     }
 
     /// A bar of a round length.
