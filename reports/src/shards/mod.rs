@@ -21,7 +21,7 @@ use files::{OutputError, UnfinishedFile, make_folder};
 use rayon::prelude::*;
 use robot::BUILD;
 use std::fmt::Display;
-use std::fs::{self, DirEntry, File};
+use std::fs::{self, DirEntry};
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
@@ -184,7 +184,7 @@ fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardError> {
 /// The lines of a file.
 fn lines(path: &Path) -> Result<impl Iterator<Item = Result<String, ShardError>>, ShardError> {
     let failed = |why| ShardError::read(path, why);
-    let file = BufReader::with_capacity(1 << 18, File::open(path).map_err(failed)?);
+    let file = BufReader::with_capacity(1 << 18, files::open(path).map_err(failed)?);
     Ok(file.lines().map(move |line| line.map_err(failed)))
 }
 

@@ -3,7 +3,7 @@
 use super::format::{Session, State};
 use super::settings::{MAX_FILE, StateError};
 use files::{FileLock, OutputError, Proof, UnfinishedFile, check_output, replace};
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;

@@ -44,7 +44,7 @@ enum Fault {
     ClockAhead,
     OdometryReset,
     Carried,
-    DiskFull,
+    Occupied,
     Killed,
     SecondWriter,
     Nonsense,
@@ -60,7 +60,7 @@ const FAULTS: [Fault; 13] = [
     Fault::ClockAhead,
     Fault::OdometryReset,
     Fault::Carried,
-    Fault::DiskFull,
+    Fault::Occupied,
     Fault::Killed,
     Fault::SecondWriter,
     Fault::Nonsense,
@@ -195,8 +195,12 @@ impl Life {
                     return Err("a second node writes to the same file".to_owned());
                 }
             }
-            Fault::DiskFull => {
-                std::fs::create_dir(self.unfinished()).map_err(|why| why.to_string())?;
+            Fault::Occupied => {
+                if self.state().exists() {
+                    self.wait();
+                    std::fs::rename(self.state(), self.kept()).map_err(|why| why.to_string())?;
+                }
+                std::fs::write(self.state(), FOREIGN[0]).map_err(|why| why.to_string())?;
                 self.now = Some((fault, end_s));
             }
             Fault::Nonsense => self.nonsense()?,
@@ -207,11 +211,14 @@ impl Life {
 
     /// What goes wrong now is over.
     fn over(&mut self) -> Result<(), String> {
-        if let Some((Fault::DiskFull, _)) = self.now.take() {
+        if let Some((Fault::Occupied, _)) = self.now.take() {
             let is_saved = self.save()?;
-            std::fs::remove_dir(self.unfinished()).map_err(|why| why.to_string())?;
-            if is_saved {
-                return Err("the node says that it has saved, and could not".to_owned());
+            if is_saved || std::fs::read(self.state()).ok().as_deref() != Some(FOREIGN[0].as_bytes()) {
+                return Err("the state replaces a file of somebody else".to_owned());
+            }
+            std::fs::remove_file(self.state()).map_err(|why| why.to_string())?;
+            if self.kept().exists() {
+                std::fs::rename(self.kept(), self.state()).map_err(|why| why.to_string())?;
             }
         }
         if self.random.random_bool(0.5) && self.save()? {
@@ -223,9 +230,16 @@ impl Life {
         Ok(())
     }
 
-    /// The file that is renamed when the state is written.
-    fn unfinished(&self) -> PathBuf {
-        files::temporary_name(&self.state())
+    /// Where the state is while somebody else's file has its name.
+    fn kept(&self) -> PathBuf {
+        self.folder.path().join("kept.state")
+    }
+
+    /// Until the state is written.
+    fn wait(&mut self) {
+        if let Some(file) = &mut self.pair.node.state_file {
+            file.wait().1.ok();
+        }
     }
 
     /// Somebody carries the robot to another place. Its wheels do not turn.
@@ -248,9 +262,7 @@ impl Life {
 
     /// The node is killed, and starts again.
     fn kill(&mut self) -> Result<(), String> {
-        if let Some(file) = &mut self.pair.node.state_file {
-            file.wait().1.ok();
-        }
+        self.wait();
         let has_state = self.state().exists();
         self.pair.others.others(|others| others.events.clear());
         let (none, _, _) = node(&self.parameters, None);
