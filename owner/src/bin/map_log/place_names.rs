@@ -9,6 +9,7 @@
 //! ```
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
+use interfaces::printable;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -83,7 +84,7 @@ fn names(file: &str, text: &str) -> Result<Vec<PlaceName>> {
     };
     let name = |entry: &Entry| {
         Ok(PlaceName {
-            name: entry.name.get_ref().trim().to_owned(),
+            name: printable(entry.name.get_ref().trim()).into_owned(),
             x_m: number("x_m", &entry.x_m, COORDINATES_M)?,
             y_m: number("y_m", &entry.y_m, COORDINATES_M)?,
             radius_m: match &entry.radius_m {
