@@ -29,7 +29,7 @@ fn a_localizer_corrects_odometry_that_drifts() {
 fn every_shipped_world_runs_however_the_pose_is_known() {
     for (name, _) in worldfile::shipped::PHYSICS {
         for pose in ["exact", "odometry", "localized"] {
-            let arguments = format!("--quiet --no-rrd --world {name} --duration 3 --pose {pose} --seed 2");
+            let arguments = format!("--quiet --no-rrd --world {name} --duration 1 --pose {pose} --seed 2");
             Run::new().goes_well(&arguments);
         }
     }

@@ -3,6 +3,7 @@
 use anyhow::{bail, ensure};
 use cli::progress::Progress;
 use cli::terminal::say;
+use interfaces::printable;
 use logs::{Log, TopicChoice};
 use std::io::stderr;
 use std::path::{Path, PathBuf};
@@ -207,5 +208,5 @@ fn add_note(notes: &mut Vec<String>, note: String) {
 }
 
 fn short_name(file: &Path) -> String {
-    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+    printable(&file.file_name().unwrap_or(file.as_os_str()).to_string_lossy()).into_owned()
 }

@@ -9,6 +9,7 @@
 //! ```
 
 use anyhow::{Context, Result, anyhow, bail};
+use interfaces::printable;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeSet;
@@ -82,7 +83,10 @@ fn names(text: &str) -> Result<Vec<PlaceName>> {
     if let Some(Entry { name, .. }) = entries.iter().find(|entry| !names.insert(&entry.name)) {
         bail!("two places have the `name` {name:?}: give each its own");
     }
-    let place = |Entry { name, x_m, y_m, radius_m }: Entry| PlaceName { name, x_m, y_m, radius_m };
+    let place = |Entry { name, x_m, y_m, radius_m }: Entry| {
+        let name = printable(&name).into_owned();
+        PlaceName { name, x_m, y_m, radius_m }
+    };
     Ok(entries.into_iter().map(place).collect())
 }
 

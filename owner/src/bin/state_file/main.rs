@@ -4,6 +4,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use clap::{Parser, Subcommand};
 use cli::program::{Failure, input, start};
 use cli::terminal::print;
+use interfaces::printable;
 use owner::words::{date, length_of, list};
 use robot::state::{SavedSettings, State, StateFile, earlier_name, read_state};
 use std::path::{Path, PathBuf};
@@ -90,7 +91,8 @@ fn show(file: &Path, settings: bool) -> Result<ExitCode, Failure> {
 
 fn remove(file: &Path, log: &Path) -> Result<ExitCode, Failure> {
     // As map_log names logs.
-    let log = &*log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
+    let log = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
+    let log = &*printable(&log);
     let locked = StateFile::open(file).with_context(|| format!("{}: cannot use it", file.display()));
     let locked = locked.map_err(input)?; // before it is read
     let state = read(file).map_err(input)?;
