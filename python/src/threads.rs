@@ -24,7 +24,7 @@ pub(crate) fn on_threads<R: Send>(
     if threads == 1 {
         return Ok(py.detach(work));
     }
-    let pool = || {
+    let pool = || -> PyResult<&'static ThreadPool> {
         let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (std::process::id(), threads);
         if let Some(pool) = pools.get(&key) {

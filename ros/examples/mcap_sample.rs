@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    writer.finish()?.into_inner()?.sync_all()?;
+    writer.finish()?.into_inner()?.finish()?;
     Ok(())
 }
 

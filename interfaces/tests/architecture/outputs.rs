@@ -9,8 +9,8 @@ use syn::fold::Fold;
 
 /// Calls that write, as tokens.
 const WRITE: [&str; 20] = [
-    "File :: create",
-    "File :: options",
+    " File :: create",
+    " File :: options",
     "fs :: write",
     "fs :: rename",
     "fs :: copy",
@@ -26,7 +26,7 @@ const WRITE: [&str; 20] = [
     " set_permissions ",
     " renameat ",
     " unlinkat ",
-    " persist ",
+    " . persist (",
     "SVGBackend :: new",
     "BitMapBackend :: new",
 ];
