@@ -4,6 +4,7 @@
 mod alignment;
 mod glass;
 mod known_things;
+mod messages;
 mod scan_filter;
 mod scheduled_things;
 mod sessions;
