@@ -489,7 +489,7 @@ fn storm() {
             return;
         }
         let mut lived = live(seed, lives == 1);
-        if seed % TWICE == 0 && lived.is_ok() && live(seed, false) != lived {
+        if seed.is_multiple_of(TWICE) && lived.is_ok() && live(seed, false) != lived {
             lived = Err("the same seed gives other bits".to_owned());
         }
         match lived {
