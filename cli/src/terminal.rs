@@ -1,5 +1,5 @@
 //! Lines for the user. Results go to the standard output; errors, warnings and progress go to the error output. All of them
-//! are [printable](interfaces::printable): they hold names and values from files.
+//! are printable: they hold names and values from files.
 
 use anyhow::Context;
 use interfaces::{printable, printable_lines};

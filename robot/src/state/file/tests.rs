@@ -2,6 +2,7 @@ use super::*;
 use crate::state::{SavedSettings, Session};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
+use std::fs;
 
 fn state() -> State {
     State {
