@@ -107,9 +107,10 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
 
 #[test]
 fn names_are_beside_their_owners() {
-    let (file, scene) = (tempfile::NamedTempFile::new().unwrap(), FakeRun::new().scene);
-    draw_plan(file.path(), &scene).unwrap();
-    let picture = image::load_from_memory(&std::fs::read(file.path()).unwrap()).unwrap().into_rgb8();
+    let (folder, scene) = (tempfile::tempdir().unwrap(), FakeRun::new().scene);
+    let file = folder.path().join("plan.png");
+    draw_plan(&file, &scene).unwrap();
+    let picture = image::load_from_memory(&std::fs::read(&file).unwrap()).unwrap().into_rgb8();
     let panel = Panel::of_scene(&scene.frame, scene.is_grid, plan::entries(&scene).len());
     let dark = |[x, y]: [f64; 2]| {
         let [left, top] = panel.pixel(&Point2::new(x - 0.5, y));
@@ -184,5 +185,5 @@ fn a_folder_that_cannot_be_written_is_named() {
     let error = write_all(&folder, &run.scene, &run.mapper, &trails, &Goals::default(), &Layer::ALL)
         .unwrap_err()
         .to_string();
-    assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
+    assert!(error.starts_with(&format!("cannot write {}", folder.display())), "{error}");
 }
