@@ -210,7 +210,7 @@ fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), Outp
 }
 
 /// Creates the file with the first temporary name that is free. What a killed run has left of a file with a
-/// proof is removed.
+/// proof is removed, and so is an empty one.
 fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File, OsString), OutputError> {
     let path = folder.join(name);
     for partial in (1..=MAX_LEFT).map(|number| temporary_name(Path::new(name), number)) {
@@ -219,12 +219,13 @@ fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File,
                 let why = "another run is writing there; wait for it, or give another name";
                 return Err(OutputError::new(&path, io::Error::new(io::ErrorKind::ResourceBusy, why)));
             }
+            let is_empty = left.metadata().is_ok_and(|known| known.len() == 0);
             let mut start = Vec::new();
             let is_left = |proof: Proof| {
                 left.take(proof.start.len() as u64).read_to_end(&mut start).is_ok()
                     && proof.start.starts_with(&start)
             };
-            if proof.is_some_and(is_left) {
+            if is_empty || proof.is_some_and(is_left) {
                 folder.remove(&partial)?;
             }
         }

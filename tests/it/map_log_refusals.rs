@@ -79,7 +79,7 @@ fn names_that_are_no_text() {
         assert_eq!(ended.status.code(), Some(0), "{ended:?}");
         fs::remove_file(run.path("s")).unwrap();
     }
-    assert_eq!(run.summary().at("/logs"), &serde_json::json!(["a b\n.log"]));
+    assert_eq!(run.summary().at("/logs"), &serde_json::json!(["a b\\n.log"]));
 }
 
 /// Poses of another SLAM, where there are none.

@@ -159,7 +159,7 @@ fn a_shard_of_another_experiment_is_refused_before_anything_is_written() {
         refused(&Header { build: "0123".into(), ..own.clone() }).contains(", not 0123; give another folder")
     );
     assert_eq!(file("shard-1-of-3.jsonl"), before);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4); // with the list of files
     // What is no shard is not replaced either.
     fs::write(folder.path().join("shard-2-of-3.jsonl"), "notes").unwrap();
     refused(&Header { shard: shard(2, 3), ..own });

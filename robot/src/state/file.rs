@@ -212,7 +212,9 @@ fn is_state(mut file: &File) -> bool {
 /// Copies the file as it is now: what is saved next can be undone.
 fn keep(path: &Path) -> io::Result<()> {
     let mut present = File::open(path)?;
-    let kept = UnfinishedFile::with_proof(&earlier_of(path), Some(PROOF))
+    // If somebody has put another file there, that is no state to keep.
+    let kept = check_output(path, Some(PROOF))
+        .and_then(|()| UnfinishedFile::with_proof(&earlier_of(path), Some(PROOF)))
         .and_then(|file| file.write(|file| io::copy(&mut present, file).map(drop)));
     kept.map_err(|OutputError { why, .. }| why)
 }

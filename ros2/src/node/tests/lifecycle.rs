@@ -91,7 +91,7 @@ fn parameters_are_set_where_that_is_safe() {
     let Reply::Descriptions(all) = reply else { panic!("{reply:?}") };
     assert_eq!(all.len(), names.len());
     assert!(all.iter().all(|one| one.description.len() > 5), "{all:?}");
-    assert_eq!(all.iter().filter(|one| one.read_only).count(), 11);
+    assert_eq!(all.iter().filter(|one| one.read_only).count(), 12);
     let reply = pair.call(Service::GetParameters, Call::Names(names));
     let Reply::Values(values) = reply else { panic!("{reply:?}") };
     assert!(values.iter().all(|value| value.value().is_some()));
