@@ -8,9 +8,9 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// The time between two looks at the memory and the threads.
-const PERIOD: Duration = Duration::from_millis(50);
+const PERIOD: Duration = Duration::from_millis(100);
 /// A node that is to end saves its state within this time; the program ends then in any case.
-const PATIENCE: Duration = Duration::from_secs(5);
+const PATIENCE: Duration = Duration::from_secs(20);
 /// The names of the threads of the library begin with this: one hears and sends, and one discovers others.
 const NETWORK: &str = "RustDDS";
 const NETWORK_THREADS: usize = 2;
