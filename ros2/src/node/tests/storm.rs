@@ -178,7 +178,11 @@ impl Life {
                 let jumps = [10, 3600, 31_536_000];
                 self.clock_ns += jumps[self.random.random_range(0..jumps.len())] * 1_000_000_000;
             }
-            Fault::OdometryReset => self.odom = self.pair.sim.poses().ok_or("no robot")?[1],
+            Fault::OdometryReset => {
+                self.odom = self.pair.sim.poses().ok_or("no robot")?[1];
+                // Readings from before it may still wait.
+                self.now = Some((fault, self.time_s() + 1.0));
+            }
             Fault::Carried => {
                 self.carry();
                 self.now = Some((fault, self.time_s() + 1.0));
@@ -431,8 +435,9 @@ impl Life {
         let (off_m, off_rad) = (off.translation.vector.norm(), heading_rad(&off).abs());
         self.bits.extend([off_m, off_rad, f64::from(u8::from(is_certain))]);
         let is_wrong = is_certain && (off_m > WRONG[0] || off_rad > WRONG[1]);
-        let is_carried = self.now.is_some_and(|(fault, _)| fault == Fault::Carried);
-        self.wrong = if is_wrong && !is_carried { self.wrong + 1 } else { 0 };
+        let is_displaced =
+            self.now.is_some_and(|(fault, _)| matches!(fault, Fault::Carried | Fault::OdometryReset));
+        self.wrong = if is_wrong && !is_displaced { self.wrong + 1 } else { 0 };
         if is_wrong {
             self.tell(&format!("certain, and wrong by {off_m:.2} m and {off_rad:.2} rad"));
         }
