@@ -12,7 +12,7 @@
 //! cargo run -p curious-evaluation --example closed_loop -- [WORLD [SEED [MINUTES [SESSIONS [NOISE_M]]]]]
 //! ```
 
-#[path = "shared/alignment.rs"]
+#[path = "log_trajectory/alignment.rs"]
 mod alignment;
 
 use agent::Policy;

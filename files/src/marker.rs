@@ -172,7 +172,7 @@ fn check(markers: &[&Marker], folder: &Folder, name: &str, advice: &str) -> Resu
     let why = if markers.iter().any(|marker| marker.lists(name)) {
         "it was changed since a run wrote it"
     } else {
-        "no run of this version wrote it (an earlier version may have)"
+        "no run wrote it"
     };
     let why = format!("the results would replace it, and {why}; move it, or {advice}");
     Err(OutputError::refused(&path, why))

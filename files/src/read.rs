@@ -22,21 +22,21 @@ pub fn open(path: &Path) -> Result<File> {
 ///
 /// # Errors
 ///
-/// When the file cannot be read, is not regular, or has more than `most_bytes` bytes.
-pub fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>> {
+/// When the file cannot be read, is not regular, or has more than `max_bytes` bytes.
+pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    open(path)?.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
-    within(bytes, most_bytes)
+    open(path)?.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    within(bytes, max_bytes)
 }
 
-/// The bytes of a file, if there are at most `most_bytes`.
+/// The bytes of a file, if there are at most `max_bytes`.
 ///
 /// # Errors
 ///
 /// When there are more.
-pub fn within(bytes: Vec<u8>, most_bytes: u64) -> Result<Vec<u8>> {
-    if bytes.len() as u64 > most_bytes {
-        return Err(Error::new(ErrorKind::FileTooLarge, format!("it has more than {most_bytes} bytes")));
+pub fn within(bytes: Vec<u8>, max_bytes: u64) -> Result<Vec<u8>> {
+    if bytes.len() as u64 > max_bytes {
+        return Err(Error::new(ErrorKind::FileTooLarge, format!("it has more than {max_bytes} bytes")));
     }
     Ok(bytes)
 }
@@ -46,9 +46,9 @@ pub fn within(bytes: Vec<u8>, most_bytes: u64) -> Result<Vec<u8>> {
 /// # Errors
 ///
 /// As [`read`], and when it is not UTF-8.
-pub fn read_text(path: &Path, most_bytes: u64) -> Result<String> {
+pub fn read_text(path: &Path, max_bytes: u64) -> Result<String> {
     let not_text = |_| Error::new(ErrorKind::InvalidData, "it is not a text file (UTF-8)");
-    String::from_utf8(read(path, most_bytes)?).map_err(not_text)
+    String::from_utf8(read(path, max_bytes)?).map_err(not_text)
 }
 
 #[cfg(test)]

@@ -84,9 +84,11 @@ impl Guard {
         self.stop.store(true, Ordering::Relaxed);
     }
 
+    /// What the node returns when it has ended.
+    ///
     /// # Errors
     ///
-    /// Why the node had to end.
+    /// When the guard has ended it: the reason.
     pub fn check(&self) -> anyhow::Result<()> {
         self.failure.get().map_or(Ok(()), |why| Err(anyhow::anyhow!("{why}")))
     }

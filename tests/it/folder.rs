@@ -61,7 +61,7 @@ fn a_foreign_file_ends_a_run_before_it_begins() {
             std::fs::create_dir(run.path("out")).unwrap();
             run.write(&format!("out/{name}"), "of the user");
             let message = run.refuses(arguments);
-            let why = "the results would replace it, and no run of this version wrote it (an earlier version may have); move it, \
+            let why = "the results would replace it, and no run wrote it; move it, \
                        or give another folder by --out";
             assert_eq!(message, format!("error: cannot write out/{name}: {why}\n"));
             assert_eq!(names(&run.path("out")), [name.as_str()], "nothing is written");

@@ -41,7 +41,7 @@ fn a_file_has_one_purpose() {
     let run = Run::of("map_log");
     run.write("a.log", &standing_log(1.7e9, 40));
     run.write("thesis.tex", "of the user");
-    insta::assert_snapshot!(run.refuses("a.log --no-rrd --mcap thesis.tex"), @"error: cannot write the bag of --mcap: cannot write thesis.tex: the results would replace it, and no run of this version wrote it (an earlier version may have); move it, or choose another name");
+    insta::assert_snapshot!(run.refuses("a.log --no-rrd --mcap thesis.tex"), @"error: cannot write the bag of --mcap: cannot write thesis.tex: the results would replace it, and no run wrote it; move it, or choose another name");
     insta::assert_snapshot!(run.refuses("a.log --no-rrd --mcap b --state ./b"), @"error: --mcap and --state name the same file ./b: give each its own");
     insta::assert_snapshot!(run.refuses("a.log --no-rrd --state out"), @"error: --out and --state name the same file out: give each its own");
     let run = run.with("four_rooms");

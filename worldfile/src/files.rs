@@ -16,8 +16,8 @@ pub trait Files {
     ///
     /// # Errors
     ///
-    /// When the file does not exist, cannot be read, or has more than `most_bytes` bytes.
-    fn read(&self, path: &Path, most_bytes: u64) -> Result<Vec<u8>>;
+    /// When the file does not exist, cannot be read, or has more than `max_bytes` bytes.
+    fn read(&self, path: &Path, max_bytes: u64) -> Result<Vec<u8>>;
 }
 
 /// The files on the disk of this machine.
@@ -25,16 +25,16 @@ pub trait Files {
 pub struct Disk;
 
 impl Files for Disk {
-    fn read(&self, path: &Path, most_bytes: u64) -> Result<Vec<u8>> {
-        files::read(path, most_bytes)
+    fn read(&self, path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
+        files::read(path, max_bytes)
     }
 }
 
 /// Files in memory, by their paths.
 impl Files for BTreeMap<PathBuf, Vec<u8>> {
-    fn read(&self, path: &Path, most_bytes: u64) -> Result<Vec<u8>> {
+    fn read(&self, path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
         match self.get(path) {
-            Some(bytes) => files::within(bytes.clone(), most_bytes),
+            Some(bytes) => files::within(bytes.clone(), max_bytes),
             None => Err(Error::new(ErrorKind::NotFound, "no such file")),
         }
     }

@@ -12,7 +12,6 @@
 //! cargo run -p curious-evaluation --example log_trajectory -- LOG [FOLDER] [no-loops] [turned=RAD]
 //! ```
 
-#[path = "../shared/alignment.rs"]
 mod alignment;
 mod comparison;
 mod picture;

@@ -11,7 +11,7 @@
 //! cargo run -p curious-evaluation --example simulated_logs -- FIRST_SEED LOGS [FOLDER]
 //! ```
 
-#[path = "../shared/alignment.rs"]
+#[path = "../log_trajectory/alignment.rs"]
 mod alignment;
 mod drive;
 mod ghosts;

@@ -1,6 +1,6 @@
 //! Trials in simulated worlds: sensors, sessions and schedules. One binary, because linking takes longer than compiling.
 
-#[path = "../../examples/shared/alignment.rs"]
+#[path = "../../examples/log_trajectory/alignment.rs"]
 mod alignment;
 mod glass;
 mod known_things;

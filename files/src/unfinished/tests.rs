@@ -41,10 +41,15 @@ fn a_file_appears_when_it_is_complete() {
 fn killed_runs_leave_a_bounded_number_of_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
-    for _ in 0..MAX_LEFT {
-        let Target { folder, partial, .. } = UnfinishedFile::create(&path).unwrap().target.take().unwrap();
+    let leave = |content: &[u8]| {
+        let mut file = UnfinishedFile::create(&path).unwrap();
+        file.write_all(content).unwrap();
+        let Target { folder, partial, .. } = file.target.take().unwrap();
         assert!(folder.has_file(partial), "it is left");
-    }
+    };
+    (0..2 * MAX_LEFT).for_each(|_| leave(b"")); // an empty one is used again
+    assert_eq!(names(folder.path()), ["a.unfinished.txt"]);
+    (0..MAX_LEFT).for_each(|_| leave(b"a part"));
     let error = UnfinishedFile::create(&path).unwrap_err();
     assert!(error.is_refusal() && error.to_string().contains("a.unfinished_9.txt and others"), "{error}");
 }

@@ -127,8 +127,8 @@ impl Shards {
         Ok(Self { header, files, folder: folder.to_owned() })
     }
 
-    /// Checks that this program can merge the shards: that they are its own, of its version and of its build, and that none is
-    /// missing.
+    /// Checks that this program can merge the shards: that they are its own, of its version and of its build, and that all shards
+    /// are there.
     ///
     /// # Errors
     ///

@@ -45,8 +45,8 @@ impl Routes {
         Ok(Some(Self { graph, next_round: Instant::now(), next_edge: 0, found: Vec::new() }))
     }
 
-    /// Looks at the next edge. A request when there are enough, and after the last one: all edges that were ever seen are told in each
-    /// round, so that a server that has started anew knows them as well.
+    /// Looks at the next edge. Returns a request when `MAX_EDGES` wait for it, and after the last edge. Each round sends all edges
+    /// that were ever seen, so that a server that has started anew knows them as well.
     fn next(
         &mut self,
         outlook: &Outlook<'_>,

@@ -47,7 +47,7 @@ fn name<'a, D: Deserializer<'a>>(from: D) -> Result<String, D::Error> {
     let letters = name.chars().count();
     let why =
         || D::Error::custom(format!("a name has 1 to {MAX_LETTERS} letters, and this one has {letters}"));
-    (1..=MAX_LETTERS).contains(&letters).then_some(name).ok_or_else(why)
+    (1..=MAX_LETTERS).contains(&letters).then(|| printable(&name).into_owned()).ok_or_else(why)
 }
 
 fn coordinate<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
@@ -83,10 +83,7 @@ fn names(text: &str) -> Result<Vec<PlaceName>> {
     if let Some(Entry { name, .. }) = entries.iter().find(|entry| !names.insert(&entry.name)) {
         bail!("two places have the `name` {name:?}: give each its own");
     }
-    let place = |Entry { name, x_m, y_m, radius_m }: Entry| {
-        let name = printable(&name).into_owned();
-        PlaceName { name, x_m, y_m, radius_m }
-    };
+    let place = |Entry { name, x_m, y_m, radius_m }: Entry| PlaceName { name, x_m, y_m, radius_m };
     Ok(entries.into_iter().map(place).collect())
 }
 
