@@ -130,6 +130,11 @@ impl LoopClosingLocalizer {
         self.background.is_none()
     }
 
+    /// Whether [`settle`](Self::settle) would not wait long.
+    pub fn is_up_to_date(&self) -> bool {
+        self.background.as_ref().is_none_or(Background::is_up_to_date)
+    }
+
     /// Waits for the map that is being learned again, and changes to it: before a snapshot, or another session.
     pub fn settle(&mut self, map: &mut Mapper) {
         if let Some(LoopClosed { localized, .. }) = self.change_map(map) {

@@ -113,6 +113,11 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
         self.localization.localizer().is_none_or(LoopClosingLocalizer::is_settled)
     }
 
+    /// Whether [`settle`](Self::settle) would not wait long.
+    pub fn is_up_to_date(&self) -> bool {
+        self.localization.localizer().is_none_or(LoopClosingLocalizer::is_up_to_date)
+    }
+
     /// Waits for what is being learned again, and takes it over. Returns whether the map is another one now.
     pub fn settle(&mut self) -> bool {
         let unsettled = self.localization.localizer_mut().filter(|localizer| !localizer.is_settled());

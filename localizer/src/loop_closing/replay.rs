@@ -32,9 +32,14 @@ pub(super) struct Background {
 }
 
 impl Background {
+    /// Whether the thread has read all readings so far.
+    pub(super) fn is_up_to_date(&self) -> bool {
+        self.read.load(Ordering::Relaxed) == self.readings || self.thread.is_finished()
+    }
+
     /// Passes a reading on. Returns whether the robot changes to the new map with it.
     pub(super) fn add(&mut self, meanwhile: Meanwhile, switch: Switch) -> bool {
-        let is_up_to_date = self.read.load(Ordering::Relaxed) == self.readings || self.thread.is_finished();
+        let is_up_to_date = self.is_up_to_date();
         self.readings += 1;
         // A thread that has failed is noticed by its result.
         self.meanwhile.send(meanwhile).ok();

@@ -56,8 +56,12 @@ impl<L: Link> CuriousNode<L> {
     }
 
     /// Goes on with what others have asked for, and answers those whose file is written. While a map is being learned again, they
-    /// wait, and the robot does not.
+    /// wait, and the robot does not. The robot changes to that map for them, since no further scan may come.
     pub(super) fn answer_askers(&mut self) {
+        let must_save = self.state_file.iter().chain(&self.copies).any(|file| file.must_save);
+        if must_save && self.robot.is_up_to_date() {
+            self.settle();
+        }
         if self.robot.is_settled() {
             let last = self.last.map_or(Time::default(), |(last, _)| last);
             for copy in self.copies.iter_mut().filter(|copy| copy.must_save) {
