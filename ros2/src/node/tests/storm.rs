@@ -67,7 +67,8 @@ impl Life {
             std::fs::write(folder.path().join(name), name).unwrap();
         }
         let mode = if random.random_bool(0.5) { Mode::Explore } else { Mode::Map };
-        let parameters = Parameters { use_sim_time: true, max_laser_range_m: 8.0, ..parameters(mode) };
+        let parameters =
+            Parameters { use_sim_time: true, max_laser_range_m: 8.0, map_size_m: 24.0, ..parameters(mode) };
         let world = worldfile::physics::parse_world("storm.toml", include_str!("storm.toml")).unwrap();
         let (node, others, said) = node(&parameters, Some(&folder.path().join("own.state")));
         let robot = FakeLink::default();
