@@ -104,8 +104,10 @@ impl MapMatcher {
     /// Verifies a pose that was found by a search, or after a contradiction: it is not certain before.
     fn verify(&mut self, step: &Step, support: &Support) {
         let pose = &step.track.pose;
-        let is_near =
-            self.times.now_s - self.times.certain_s <= CARRIED_S && self.is_where_odometry_says(pose);
+        // A robot that was carried is in a place that an unfinished map may not contain: something there looks like it.
+        let is_near = !self.is_unfinished()
+            && self.times.now_s - self.times.certain_s <= CARRIED_S
+            && self.is_where_odometry_says(pose);
         let moved = moved(&step.scan.motion, &step.scan.reading.scan);
         match self.verification.count(support, &moved, is_near, CONFIRM_SCANS) {
             Verdict::Certain => self.on(Event::Confirmed),

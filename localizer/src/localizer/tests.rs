@@ -26,6 +26,10 @@ fn range_m(corners: &[(f64, f64)], at: &Isometry2<f64>, angle_rad: f64) -> f32 {
 
 /// A reading of a robot that drives in the room, with a scan that sweeps or not.
 fn reading(number: u32, sweep_s: f64) -> LaserReading {
+    reading_in(&CORNERS, number, sweep_s)
+}
+
+fn reading_in(corners: &[(f64, f64)], number: u32, sweep_s: f64) -> LaserReading {
     let at = pose(2.0 + 0.01 * f64::from(number % 40), 1.5, 0.02 * f64::from(number));
     let (mount, twist) = (pose(0.1, 0.0, 0.0), Twist { linear_mps: 0.1, angular_radps: 0.2 });
     let time_s = 0.1 * f64::from(number);
@@ -37,7 +41,7 @@ fn reading(number: u32, sweep_s: f64) -> LaserReading {
         ranges_m: Vec::new(),
         ..Scan::default()
     };
-    scan.ranges_m = (0..180).map(|beam| range_m(&CORNERS, &(at * mount), scan.angle_rad(beam))).collect();
+    scan.ranges_m = (0..180).map(|beam| range_m(corners, &(at * mount), scan.angle_rad(beam))).collect();
     let velocities = [0.05, 0.0].map(|age_s| VelocitySample { time_s: time_s - age_s, twist }).to_vec();
     LaserReading { time_s, pose: at, twist, velocities, mount, scan }
 }
@@ -224,6 +228,28 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
         assert!(most < cells + MAX_WORK, "{side_m} m: {most} steps");
         println!("{side_m} m: found after {scans} scans, at most {most} steps in one");
     }
+}
+
+/// Whether the pose is certain again after a robot was carried through a small room to one that looks like the first but for a tenth.
+fn is_certain_elsewhere(mut localizer: Localizer, map: &Grid<CellState>) -> bool {
+    let small = [(1.5, 1.0), (3.0, 1.0), (3.0, 2.2), (1.5, 2.2)];
+    let mut similar = CORNERS.to_vec();
+    similar.extend([(0.0, 2.4), (0.5, 2.4), (0.5, 1.1), (0.0, 1.1)]);
+    for (corners, numbers) in [(&small[..], 30..35), (&similar[..], 35..65)] {
+        for number in numbers {
+            localizer.localize(&reading_in(corners, number, 0.0), map);
+        }
+    }
+    localizer.builder.matcher.state == State::Tracking
+}
+
+#[test]
+fn a_place_that_looks_like_the_last_one_is_verified_longer_where_the_map_may_not_contain_it() {
+    let (unfinished, map) = learned(0.0);
+    let mut finished = unfinished.clone();
+    finished.builder.matcher.from_nothing = false;
+    assert!(!is_certain_elsewhere(unfinished, &map));
+    assert!(is_certain_elsewhere(finished, &map));
 }
 
 #[test]
