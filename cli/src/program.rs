@@ -46,7 +46,7 @@ impl From<OutputError> for Failure {
 ///
 /// As [`RunFolder::open`].
 pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
-    let folder = RunFolder::open(out)?;
+    let folder = RunFolder::open(out).map_err(input)?;
     folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {note}")));
     Ok(folder)
 }

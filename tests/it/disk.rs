@@ -47,12 +47,12 @@ fn recordings_and_moving_pictures_that_cannot_be_written() {
         assert_eq!(std::fs::read_to_string(run.path("thesis.rrd")).unwrap(), "precious");
         ended.stderr
     };
-    insta::assert_snapshot!(error(1, "--rrd no/such/run.rrd"), @"error: cannot write no/such/run.rrd: No such file or directory (os error 2)");
+    insta::assert_snapshot!(error(2, "--rrd no/such/run.rrd"), @"error: cannot write no/such/run.rrd: No such file or directory (os error 2)");
     if cfg!(target_os = "linux") {
         insta::assert_snapshot!(error(1, "--rrd /dev/full"), @"error: cannot write the recording /dev/full: No space left on device (os error 28)");
     }
     insta::assert_snapshot!(error(2, "--rrd thesis.rrd"), @"error: cannot write thesis.rrd: the results would replace it, and no run wrote it; move it, or choose another name");
-    insta::assert_snapshot!(error(1, "--no-rrd --gif no/such/run.gif"), @"error: cannot write no/such/run.gif: No such file or directory (os error 2)");
+    insta::assert_snapshot!(error(2, "--no-rrd --gif no/such/run.gif"), @"error: cannot write no/such/run.gif: No such file or directory (os error 2)");
 }
 
 #[test]
