@@ -9,7 +9,7 @@ use interfaces::PoseMode;
 use robot::state::{State, StateFile};
 use std::ffi::OsString;
 use std::fmt::Display;
-use std::io::stderr;
+use std::io::{ErrorKind, stderr};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -40,13 +40,21 @@ impl From<OutputError> for Failure {
     }
 }
 
+/// The failure for an output that cannot be opened: it needs another name, unless another run or the disk is the reason.
+pub fn not_opened(error: OutputError) -> Failure {
+    match error.why.kind() {
+        ErrorKind::ResourceBusy | ErrorKind::StorageFull => Failure::Run(error.into()),
+        _ => input(error),
+    }
+}
+
 /// Opens the folder of `--out`, and tells the user what it has besides the results of an earlier run.
 ///
 /// # Errors
 ///
 /// As [`RunFolder::open`].
 pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
-    let folder = RunFolder::open(out).map_err(input)?;
+    let folder = RunFolder::open(out).map_err(not_opened)?;
     folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {note}")));
     Ok(folder)
 }

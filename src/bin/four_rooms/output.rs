@@ -5,7 +5,7 @@ use crate::args::{Args, DriveChoice};
 use crate::parts::TrialStateFile;
 use anyhow::Context;
 use cli::bag::RunBag;
-use cli::program::{Failure, arguments, input, results_folder};
+use cli::program::{Failure, arguments, input, not_opened, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print_lines, say};
 use draw::Film;
@@ -198,7 +198,7 @@ fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failu
     let named = || folder.reserve(&format!("{}.rrd", file_name::of(&scene.title)));
     let file = (!args.no_rrd).then(|| args.rrd.clone().map_or_else(named, Ok)).transpose()?;
     let [file, gif] = [&file, &args.gif].map(|path| path.as_deref().map(UnfinishedFile::create).transpose());
-    let (file, gif) = (file.map_err(input)?, gif.map_err(input)?);
+    let (file, gif) = (file.map_err(not_opened)?, gif.map_err(not_opened)?);
     let recorder = match file {
         None if live.is_empty() => None,
         file => Some(Recorder::new(file, &live, scene.clone()).map_err(anyhow::Error::from)?),
