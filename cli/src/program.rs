@@ -42,8 +42,11 @@ impl From<OutputError> for Failure {
 
 /// The failure for an output that cannot be opened: it needs another name, unless another run or the disk is the reason.
 pub fn not_opened(error: OutputError) -> Failure {
-    match error.why.kind() {
-        ErrorKind::ResourceBusy | ErrorKind::StorageFull => Failure::Run(error.into()),
+    let is_of_kind = matches!(error.why.kind(), ErrorKind::ResourceBusy | ErrorKind::StorageFull);
+    match error.why.raw_os_error() {
+        // An error of the disk, too little memory, too many open files.
+        Some(5 | 12 | 23 | 24) => Failure::Run(error.into()),
+        _ if is_of_kind => Failure::Run(error.into()),
         _ => input(error),
     }
 }

@@ -5,7 +5,7 @@
 //! followed if it is a link: whatever is read, made, moved or removed is inside.
 
 use super::OutputError;
-use rustix::fs::{AtFlags, Dir, FileType, Mode, OFlags, Stat};
+use rustix::fs::{AtFlags, Dir, FileType, Mode, OFlags, RenameFlags, Stat};
 use rustix::io::Errno;
 use std::ffi::OsString;
 use std::fs::File;
@@ -16,8 +16,6 @@ use std::path::{Path, PathBuf};
 
 /// What is read of a file of ours that lists names; a longer one is none of ours.
 const MAX_BYTES: u64 = 1 << 26;
-/// How such a file begins.
-const LIST_START: &[u8] = b"{\n  \"schema\": ";
 const FLAGS: OFlags = OFlags::CLOEXEC.union(OFlags::NOFOLLOW);
 
 /// An open folder.
@@ -117,25 +115,18 @@ impl Folder {
         Ok(rustix::fs::openat(&self.handle, name.as_ref(), flags, Mode::from(0o666))?.into())
     }
 
-    /// Writes a file that lists names: it is either complete or as it was. What a killed run has left of it
-    /// is removed.
+    /// Writes a file that lists names: it is either complete or as it was.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        let is_left = |new: &String| {
-            let start = self.read(new).ok().flatten().unwrap_or_else(|| b"another file".to_vec());
-            let length = start.len().min(LIST_START.len());
-            start[..length] == LIST_START[..length]
-        };
         self.run(name, || {
-            let mut free = (1..10).map(|number| format!("{name}_{number}"));
-            let new = free.find(|new| self.is_free(new) || is_left(new)).unwrap_or_default();
-            unless(Errno::NOENT, rustix::fs::unlinkat(&self.handle, new.as_str(), AtFlags::empty()))?;
+            let mut free = (1..1000).map(|number| format!("{name}_{number}"));
+            let new = free.find(|new| self.is_free(new)).unwrap_or_default();
             let mut file = self.create(&new)?;
             file.write_all(bytes).and_then(|()| file.sync_all())?;
             Ok(rustix::fs::renameat(&self.handle, new.as_str(), &self.handle, name)?)
         })
     }
 
-    /// Gives a file another name, here or in another folder.
+    /// Gives a file another name, here or in another folder, which nothing has.
     pub(super) fn rename(
         &self,
         name: impl AsRef<Path>,
@@ -143,7 +134,21 @@ impl Folder {
         new: impl AsRef<Path>,
     ) -> Result<(), OutputError> {
         let (name, new) = (name.as_ref(), new.as_ref());
-        to.run(new, || Ok(rustix::fs::renameat(&self.handle, name, &to.handle, new)?))
+        to.run(new, || {
+            match rustix::fs::renameat_with(&self.handle, name, &to.handle, new, RenameFlags::NOREPLACE) {
+                // Not every file system can do this.
+                Err(Errno::INVAL | Errno::NOSYS) if to.is_free(new) => {
+                    Ok(rustix::fs::renameat(&self.handle, name, &to.handle, new)?)
+                }
+                done => Ok(done?),
+            }
+        })
+    }
+
+    /// Gives a file the name of another one in the folder, which is removed.
+    pub(super) fn replace(&self, name: impl AsRef<Path>, by: impl AsRef<Path>) -> Result<(), OutputError> {
+        let (name, by) = (name.as_ref(), by.as_ref());
+        self.run(name, || Ok(rustix::fs::renameat(&self.handle, by, &self.handle, name)?))
     }
 
     /// Removes a file or a link, if it exists.

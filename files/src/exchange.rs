@@ -33,7 +33,8 @@ impl Exchange {
             return Ok(None);
         };
         let begun = serde_json::from_slice(&text).ok();
-        let begun = begun.filter(|begun: &Self| begun.earlier.is_valid() && begun.new.is_valid());
+        let is_valid = |marker: &Marker| marker.is_valid() && marker.lists_results();
+        let begun = begun.filter(|begun: &Self| is_valid(&begun.earlier) && is_valid(&begun.new));
         let why = "no run of this version has left it; move its folder, or give another one by --out";
         begun.map(Some).ok_or_else(|| OutputError::refused(&path, why.into()))
     }

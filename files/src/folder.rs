@@ -3,6 +3,7 @@
 use super::disk::Folder;
 use super::exchange::{Exchange, Moves};
 use super::marker::{self, LOCK, LOCK_CONTENT, Marker, RESULTS, UNFINISHED};
+use super::unfinished::is_temporary;
 use super::{OutputError, lock, make_folder};
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
@@ -10,7 +11,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The number of folders that killed runs can leave: the user removes those that are not needed.
+/// The number of folders that killed runs can leave: the oldest goes, unless somebody has put something into it.
 const MAX_LEFT: u32 = 9;
 /// Results of the programs whose names do not depend on the world: a folder that has other files with these names is
 /// refused before the run. Other names are checked at the end.
@@ -145,15 +146,15 @@ impl RunFolder {
         Ok(names.into_iter().collect())
     }
 
-    /// The names of the files in the subfolder.
+    /// The names of the files that the run has written into the subfolder: somebody else may have put one there.
     fn written(&self) -> Result<BTreeSet<String>, OutputError> {
         if !self.unfinished.is_at(&self.unfinished.path) {
             let why = "the folder was moved or removed while the run wrote to it: its results are lost";
             return Err(self.failed(io::Error::other(why)));
         }
-        let names = self.unfinished.names().map_err(|why| self.failed(why))?;
-        let names = names.into_iter().filter_map(|name| name.into_string().ok());
-        Ok(names.filter(|name| name != LOCK && self.unfinished.has_file(name)).collect())
+        let written = Marker::read(&self.unfinished, marker::FILES)?;
+        let names = written.names().filter(|name| written.proves(&self.unfinished, name));
+        Ok(names.cloned().collect())
     }
 
     /// Replaces the results of the earlier run, except `inputs` of this one and what is in them, by the files
@@ -216,16 +217,30 @@ impl Drop for RunFolder {
     }
 }
 
-/// Removes the files in the subfolder, and the subfolder, in which the lock goes last. A folder in it is not
-/// of a run: it stays, and with it the lock.
+/// Removes what the run has written into the subfolder, and the subfolder, in which the lock goes last. What is not of a run stays,
+/// and with it the lock.
 fn remove_unfinished(folder: &Folder, unfinished: &Folder) -> Result<(), OutputError> {
-    let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
-    let others = names.iter().filter(|name| *name != LOCK);
-    if others.filter(|name| unfinished.remove(name).is_err()).count() > 0 {
-        return Ok(());
+    if remove_files(unfinished)? {
+        unfinished.remove(LOCK)?;
+        folder.remove_inner(UNFINISHED)?;
     }
-    unfinished.remove(LOCK)?;
-    folder.remove_inner(UNFINISHED)
+    Ok(())
+}
+
+/// Removes what a run has written into a subfolder, complete or not; whether nothing else is in it than the lock.
+fn remove_files(unfinished: &Folder) -> Result<bool, OutputError> {
+    let written = Marker::read(unfinished, marker::FILES)?;
+    let is_written = |name: &OsStr| {
+        is_temporary(name) || name.to_str().is_some_and(|name| written.proves(unfinished, name))
+    };
+    let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
+    let (own, others): (Vec<_>, Vec<_>) = names.iter().partition(|name| is_written(name));
+    own.into_iter().try_for_each(|name| unfinished.remove(name))?;
+    let is_alone = others.iter().all(|name| *name == LOCK || *name == marker::FILES);
+    if is_alone {
+        unfinished.remove(marker::FILES)?;
+    }
+    Ok(is_alone)
 }
 
 /// Checks that a folder is none of a run that goes on, that what it has of an unfinished run is of a run, and
@@ -273,11 +288,13 @@ fn lock_folder(folder: &Folder, unfinished: &Folder) -> Result<File, OutputError
 fn keep_left_over(folder: &Folder, unfinished: &Folder) -> Result<Option<String>, OutputError> {
     let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
     let left: Vec<OsString> = names.into_iter().filter(|name| name != LOCK).collect();
-    if left.is_empty() {
+    if left.iter().all(|name| name == marker::FILES) {
+        unfinished.remove(marker::FILES)?;
         return Ok(None);
     }
-    let mut names = (1..=MAX_LEFT).map(|number| format!("{UNFINISHED}_{number}"));
-    let Some(free) = names.find(|name| folder.is_free(name)) else {
+    let names: Vec<String> = (1..=MAX_LEFT).map(|number| format!("{UNFINISHED}_{number}")).collect();
+    let free = names.iter().find(|name| folder.is_free(name)).cloned();
+    let Some(free) = free.or_else(|| removed(folder, names)) else {
         let why = format!(
             "it has what killed runs have left in {UNFINISHED}_1 to {UNFINISHED}_{MAX_LEFT}; remove those folders that are not needed"
         );
@@ -287,6 +304,17 @@ fn keep_left_over(folder: &Folder, unfinished: &Folder) -> Result<Option<String>
     left.iter().try_for_each(|name| unfinished.rename(name, &kept, name))?;
     let path = kept.path.display();
     Ok(Some(format!("{path} has what a killed run has left; remove it if it is not needed")))
+}
+
+/// Removes the oldest of these folders that has only what a killed run has left, and returns its name.
+fn removed(folder: &Folder, mut names: Vec<String>) -> Option<String> {
+    names.sort_by_key(|name| {
+        folder.find(name).ok().flatten().map(|found| (found.st_mtime, found.st_mtime_nsec))
+    });
+    names.into_iter().find(|name| {
+        folder.inner(name).is_ok_and(|left| remove_files(&left).is_ok_and(|is_alone| is_alone))
+            && folder.remove_inner(name).is_ok()
+    })
 }
 
 /// Whether a file is the same as another one, or is in or below a folder.

@@ -27,6 +27,10 @@ pub(super) const JOURNAL: &str = ".exchange.json";
 pub(super) const EARLIER: &str = ".earlier";
 /// Names that no result has.
 const RESERVED: [&str; 6] = [RESULTS, FILES, UNFINISHED, LOCK, JOURNAL, EARLIER];
+/// The endings of the names of results.
+const ENDINGS: [&str; 14] = [
+    "rrd", "json", "html", "csv", "pgm", "yaml", "npy", "tum", "png", "svg", "gif", "mcap", "toml", "geojson",
+];
 /// The schema of a marker; count up when its layout changes.
 const SCHEMA: u32 = 1;
 
@@ -68,7 +72,7 @@ impl Marker {
             Ok(marker) if marker.schema != SCHEMA => {
                 Err(invalid(format!("it has schema {}, and this program reads {SCHEMA}", marker.schema)))
             }
-            Ok(marker) if marker.is_valid() => Ok(marker),
+            Ok(marker) if marker.is_valid() && (name != RESULTS || marker.lists_results()) => Ok(marker),
             Ok(_) | Err(_) => Err(invalid("it does not list the results of a run".into())),
         }
     }
@@ -76,6 +80,12 @@ impl Marker {
     /// Whether it is of this version, and names files in one folder that can be results.
     pub(super) fn is_valid(&self) -> bool {
         self.schema == SCHEMA && self.files.keys().all(|name| is_plain(name))
+    }
+
+    /// Whether all of its names can be those of results. It can come from a stranger.
+    pub(super) fn lists_results(&self) -> bool {
+        let has_ending = |ending: &OsStr| ENDINGS.iter().any(|known| ending == *known);
+        self.files.keys().all(|name| Path::new(name).extension().is_some_and(has_ending))
     }
 
     /// Writes the marker into its folder.

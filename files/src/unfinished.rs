@@ -5,7 +5,7 @@ use super::marker::{check_file, is_of_a_run, record};
 use super::{FOREIGN, OutputError, is_locked};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Read, Seek, Write};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
@@ -14,8 +14,8 @@ use std::time::Duration;
 
 /// The maximum time until somebody reads from a pipe.
 const READER_TIMEOUT: Duration = Duration::from_secs(5);
-/// The number of incomplete files that killed runs can leave of one file.
-const MAX_LEFT: u32 = 9;
+/// The number of incomplete files that killed runs can leave of one file: they are all that is left of a recording.
+const MAX_LEFT: u32 = 999;
 
 /// A kind of file whose content shows that a run wrote it.
 #[derive(Clone, Copy, Debug)]
@@ -132,9 +132,11 @@ impl UnfinishedFile {
         if !folder.has_file(partial) {
             return Err(failed(io::Error::other("it was removed while it was written")));
         }
-        folder.rename(partial, folder, name)?;
-        // A run lists the files in its folder itself.
-        let listed = name.to_str().filter(|_| proof.is_none() && !is_of_a_run(folder));
+        match folder.is_free(name) {
+            true => folder.rename(partial, folder, name)?,
+            false => folder.replace(name, partial)?,
+        }
+        let listed = name.to_str().filter(|_| proof.is_none());
         let recorded = listed.map_or(Ok(()), |name| record(folder, name));
         folder.sync();
         self.target = None;
@@ -185,7 +187,7 @@ pub fn replace(file: &Path, by: &Path, proof: Proof) -> Result<(), OutputError> 
         return Err(OutputError::new(&folder.join(by), io::ErrorKind::NotFound));
     }
     [&name, by].into_iter().try_for_each(|name| check(&folder, name, Some(proof)))?;
-    folder.rename(by, &folder, &name)
+    folder.replace(&name, by)
 }
 
 /// Opens a file to which lines are appended, with what it has; it is made unless it exists. The caller checks
@@ -201,6 +203,10 @@ pub fn open_to_append(path: &Path) -> io::Result<File> {
 
 fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), OutputError> {
     let Some(proof) = proof else { return check_file(folder, name) };
+    if is_of_a_run(folder) {
+        let why = "a run writes its results in this folder, or has left it; choose another one";
+        return Err(OutputError::refused(&folder.path, why.into()));
+    }
     if folder.is_free(name)
         || folder.file(name).is_ok_and(|file| file.is_some_and(|file| (proof.is_intact)(&file)))
     {
@@ -210,7 +216,7 @@ fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), Outp
 }
 
 /// Creates the file with the first temporary name that is free. What a killed run has left of a file with a
-/// proof is removed, and so is an empty one.
+/// proof is removed, unless it is complete: then somebody has given it this name.
 fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File, OsString), OutputError> {
     let path = folder.join(name);
     for partial in (1..=MAX_LEFT).map(|number| temporary_name(Path::new(name), number)) {
@@ -219,13 +225,13 @@ fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File,
                 let why = "another run is writing there; wait for it, or give another name";
                 return Err(OutputError::new(&path, io::Error::new(io::ErrorKind::ResourceBusy, why)));
             }
-            let is_empty = left.metadata().is_ok_and(|known| known.len() == 0);
             let mut start = Vec::new();
             let is_left = |proof: Proof| {
-                left.take(proof.start.len() as u64).read_to_end(&mut start).is_ok()
-                    && proof.start.starts_with(&start)
+                let is_read = (&left).take(proof.start.len() as u64).read_to_end(&mut start).is_ok();
+                let is_part = is_read && start == proof.start && (&left).rewind().is_ok();
+                is_part && !(proof.is_intact)(&left)
             };
-            if is_empty || proof.is_some_and(is_left) {
+            if proof.is_some_and(is_left) {
                 folder.remove(&partial)?;
             }
         }
@@ -250,6 +256,14 @@ fn open_device(path: &Path) -> io::Result<File> {
     thread::spawn(move || report.send(File::options().write(true).open(path)));
     let nobody = || io::Error::new(io::ErrorKind::TimedOut, "this is a pipe, and nobody reads from it");
     opened.recv_timeout(READER_TIMEOUT).unwrap_or_else(|_| Err(nobody()))
+}
+
+/// Whether this is the name of a file while it is incomplete.
+pub(super) fn is_temporary(name: &OsStr) -> bool {
+    let is_one = |part: &OsStr| part.to_string_lossy().starts_with("unfinished");
+    let (name, stem) = (Path::new(name), name.to_str().map(Path::new).and_then(Path::file_stem));
+    name.extension().is_some_and(is_one)
+        || stem.and_then(|stem| Path::new(stem).extension()).is_some_and(is_one)
 }
 
 /// The name of a file while it is incomplete. It keeps its ending, so that a viewer opens it.

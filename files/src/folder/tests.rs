@@ -14,13 +14,25 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 /// A run that writes files, and a summary that lists them.
+/// Writes a result.
+fn write(folder: &RunFolder, name: &str, text: &str) {
+    crate::write_file(&folder.unfinished().join(name), |file| file.write_all(text.as_bytes())).unwrap();
+}
+
+fn kill(run: RunFolder) {
+    let [new, lock] = [".new", LOCK].map(|name| run.unfinished().join(name));
+    std::mem::forget(run); // its lock as well: another file description has none
+    fs::write(&new, LOCK_CONTENT).unwrap();
+    fs::rename(new, lock).unwrap();
+}
+
 fn run(path: &Path, files: &[&str], inputs: &[&Path]) -> Result<(), OutputError> {
     let folder = RunFolder::open(path).unwrap();
     for file in files {
-        fs::write(folder.unfinished().join(file), format!("{file} of {files:?}")).unwrap();
+        write(&folder, file, &format!("{file} of {files:?}"));
     }
     let summary = serde_json::json!({ "files": folder.results().unwrap() });
-    fs::write(folder.unfinished().join("summary.json"), summary.to_string()).unwrap();
+    write(&folder, "summary.json", &summary.to_string());
     folder.finish(inputs)
 }
 
@@ -49,7 +61,7 @@ fn a_file_that_is_written_directly_is_a_result() {
         crate::write_file(&file, |file| file.write_all(text.as_bytes())).unwrap();
         assert_eq!(run.results().unwrap(), ["own.rrd"]);
         let summary = serde_json::json!({ "files": run.results().unwrap() });
-        fs::write(run.unfinished().join("summary.json"), summary.to_string()).unwrap();
+        write(&run, "summary.json", &summary.to_string());
         run.finish(&[]).unwrap();
         assert_eq!(fs::read_to_string(&file).unwrap(), text);
     }
@@ -71,7 +83,7 @@ fn a_failed_run_leaves_the_earlier_one() {
     let path = folder.path().join("out");
     run(&path, &["map.pgm", "house.rrd"], &[]).unwrap();
     let failing = RunFolder::open(&path).unwrap();
-    fs::write(failing.unfinished().join("map.pgm"), "half").unwrap();
+    write(&failing, "map.pgm", "half");
     drop(failing);
     fs::create_dir(path.join("taken.png")).unwrap();
     run(&path, &["a.png", "map.pgm", "taken.png"], &[]).unwrap_err();
@@ -91,10 +103,7 @@ fn what_a_killed_run_has_left_is_kept() {
     for number in 1..3 {
         let killed = RunFolder::open(folder.path()).unwrap();
         fs::write(killed.unfinished().join("house.rrd"), "half").unwrap();
-        std::mem::forget(killed); // its lock as well: another file description has none
-        let [new, lock] = [".new", LOCK].map(|name| folder.path().join(UNFINISHED).join(name));
-        fs::write(&new, LOCK_CONTENT).unwrap();
-        fs::rename(new, lock).unwrap();
+        kill(killed);
         let next = RunFolder::open(folder.path()).unwrap();
         assert_eq!(next.notes().len(), 1, "{:?}", next.notes());
         drop(next);
@@ -156,7 +165,12 @@ fn a_marker_from_elsewhere_removes_nothing() {
     drop(opened);
     run(path, &["map.pgm"], &[]).unwrap();
     assert_eq!(names(path), [MARKER, "a.toml", "map.pgm", "summary.json"]);
-    for wrong in [r#"{"files":["map.pgm"]}"#, "", r#"{"schema":1,"files":{"../a":{"bytes":0,"xxh3":""}}}"#] {
+    for wrong in [
+        r#"{"files":["map.pgm"]}"#,
+        "",
+        r#"{"schema":1,"files":{"../a":{"bytes":0,"xxh3":""}}}"#,
+        r#"{"schema":1,"files":{"__init__.py":{"bytes":0,"xxh3":""}}}"#,
+    ] {
         fs::write(path.join(MARKER), wrong).unwrap();
         assert!(RunFolder::open(path).unwrap_err().is_refusal(), "{wrong}");
     }
@@ -190,7 +204,7 @@ fn a_folder_of_the_user_in_that_of_a_run_stays() {
     let folder = tempfile::tempdir().unwrap();
     for fails in [true, false] {
         let run = RunFolder::open(folder.path()).unwrap();
-        fs::write(run.unfinished().join("map.pgm"), "new").unwrap();
+        write(&run, "map.pgm", "new");
         fs::create_dir(run.unfinished().join("mine")).unwrap();
         fs::write(run.unfinished().join("mine/notes.txt"), "of the user").unwrap();
         match fails {
@@ -300,7 +314,7 @@ fn a_folder_that_is_removed_during_a_run_is_an_error() {
     let path = folder.path().join("out");
     for made_again in [false, true] {
         let run = RunFolder::open(&path).unwrap();
-        fs::write(run.unfinished().join("map.pgm"), "new").unwrap();
+        write(&run, "map.pgm", "new");
         fs::remove_dir_all(&path).unwrap();
         if made_again {
             fs::create_dir_all(run.unfinished()).unwrap();
@@ -313,17 +327,49 @@ fn a_folder_that_is_removed_during_a_run_is_an_error() {
 #[test]
 fn killed_runs_leave_a_bounded_number_of_folders() {
     let folder = tempfile::tempdir().unwrap();
-    for number in 1..=MAX_LEFT {
-        fs::create_dir(folder.path().join(format!("{UNFINISHED}_{number}"))).unwrap();
+    let path = folder.path();
+    let kept = |number: u32| path.join(format!("{UNFINISHED}_{number}"));
+    for number in 1..=3 * MAX_LEFT {
+        let killed = RunFolder::open(path).unwrap();
+        write(&killed, "map.pgm", &format!("map {number}"));
+        fs::write(killed.unfinished().join("house.unfinished.rrd"), "half").unwrap();
+        kill(killed);
+        if number == MAX_LEFT {
+            drop(RunFolder::open(path).unwrap());
+            // Somebody keeps something in the oldest one.
+            fs::write(kept(1).join("notes.txt"), "of the user").unwrap();
+        }
     }
-    drop(RunFolder::open(folder.path()).unwrap());
-    fs::create_dir(folder.path().join(UNFINISHED)).unwrap();
-    fs::write(folder.path().join(UNFINISHED).join(LOCK), LOCK_CONTENT).unwrap();
-    fs::write(folder.path().join(UNFINISHED).join("map.pgm"), "half").unwrap();
-    let error = RunFolder::open(folder.path()).unwrap_err();
-    assert!(
-        error.is_refusal() && error.to_string().contains("remove those folders that are not needed"),
-        "{error}"
-    );
-    assert_eq!(fs::read_to_string(folder.path().join(UNFINISHED).join("map.pgm")).unwrap(), "half");
+    drop(RunFolder::open(path).unwrap());
+    let maps: std::collections::BTreeSet<String> =
+        (2..=MAX_LEFT).map(|number| fs::read_to_string(kept(number).join("map.pgm")).unwrap()).collect();
+    let expected = (2 * MAX_LEFT + 2..=3 * MAX_LEFT).map(|number| format!("map {number}")).collect();
+    assert_eq!(maps, expected, "the newest ones");
+    assert_eq!(fs::read_to_string(kept(1).join("notes.txt")).unwrap(), "of the user");
+    assert_eq!(names(path).len(), MAX_LEFT as usize, "{:?}", names(path));
+}
+
+/// What somebody else has put into the folder of a run that goes on is no result: it stays.
+#[test]
+fn a_file_of_the_user_in_the_folder_of_a_run_stays() {
+    for is_ended_well in [true, false] {
+        let folder = tempfile::tempdir().unwrap();
+        let run = RunFolder::open(folder.path()).unwrap();
+        write(&run, "map.pgm", "new");
+        write(&run, "edited.csv", "new");
+        fs::write(run.unfinished().join("notes.txt"), "of the user").unwrap();
+        fs::write(run.unfinished().join("edited.csv"), "of the user").unwrap();
+        match is_ended_well {
+            true => run.finish(&[]).unwrap(),
+            false => drop(run),
+        }
+        let next = RunFolder::open(folder.path()).unwrap();
+        assert!(next.notes()[0].contains("has what a killed run has left"), "{:?}", next.notes());
+        next.finish(&[]).unwrap();
+        let left = folder.path().join(format!("{UNFINISHED}_1"));
+        for name in ["notes.txt", "edited.csv"] {
+            assert_eq!(fs::read_to_string(left.join(name)).unwrap(), "of the user");
+        }
+        assert!(!folder.path().join("notes.txt").exists());
+    }
 }

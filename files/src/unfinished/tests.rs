@@ -38,20 +38,19 @@ fn a_file_appears_when_it_is_complete() {
 }
 
 #[test]
-fn killed_runs_leave_a_bounded_number_of_files() {
+fn what_killed_runs_have_left_of_a_file_stays() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
-    let leave = |content: &[u8]| {
+    for content in ["", "a part", "another"] {
         let mut file = UnfinishedFile::create(&path).unwrap();
-        file.write_all(content).unwrap();
+        file.write_all(content.as_bytes()).unwrap();
         let Target { folder, partial, .. } = file.target.take().unwrap();
         assert!(folder.has_file(partial), "it is left");
-    };
-    (0..2 * MAX_LEFT).for_each(|_| leave(b"")); // an empty one is used again
-    assert_eq!(names(folder.path()), ["a.unfinished.txt"]);
-    (0..MAX_LEFT).for_each(|_| leave(b"a part"));
-    let error = UnfinishedFile::create(&path).unwrap_err();
-    assert!(error.is_refusal() && error.to_string().contains("a.unfinished_9.txt and others"), "{error}");
+    }
+    let left = ["a.unfinished.txt", "a.unfinished_2.txt", "a.unfinished_3.txt"];
+    assert_eq!(names(folder.path()), left);
+    assert!(left.iter().all(|name| is_temporary(name.as_ref())));
+    assert!(["a.txt", "unfinished.txt", "b.unfinishe.txt"].iter().all(|name| !is_temporary(name.as_ref())));
 }
 
 #[test]
@@ -81,20 +80,22 @@ fn a_device_is_written_directly() {
 }
 
 #[test]
-fn a_file_in_the_folder_of_a_run_replaces_nothing_and_is_not_listed() {
+fn a_file_in_the_folder_of_a_run_replaces_nothing() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(LOCK), LOCK_CONTENT).unwrap();
     let path = folder.path().join("a.txt");
     write(&path, "first").unwrap();
     assert!(write(&path, "second").unwrap_err().is_refusal());
-    assert!(!folder.path().join(FILES).exists());
+    assert_eq!(fs::read(&path).unwrap(), b"first");
+    let proof = Proof { start: b"own", is_intact: |_| true };
+    assert!(super::check_output(&path, Some(proof)).unwrap_err().is_refusal(), "this folder is of a run");
 }
 
 #[test]
 fn a_file_with_a_proof_is_replaced_by_it_alone() {
     fn is_own(mut file: &File) -> bool {
         let mut text = String::new();
-        io::Read::read_to_string(&mut file, &mut text).is_ok() && text.starts_with("own")
+        io::Read::read_to_string(&mut file, &mut text).is_ok() && text.starts_with("own ") && text.len() == 5
     }
     let is_own = Proof { start: b"own", is_intact: is_own };
     let folder = tempfile::tempdir().unwrap();
@@ -104,11 +105,12 @@ fn a_file_with_a_proof_is_replaced_by_it_alone() {
     };
     let [killed, foreign] =
         ["a.unfinished.state", "a.unfinished_2.state"].map(|name| folder.path().join(name));
-    for left in ["", "o", "own half"] {
-        fs::write(&killed, left).unwrap();
-        write("own 1").unwrap();
-        assert!(!killed.exists(), "{left}");
-    }
+    fs::write(&killed, "own half").unwrap();
+    write("own 1").unwrap();
+    assert!(!killed.exists(), "a part is removed");
+    fs::write(&killed, "own 7").unwrap();
+    write("own 1").unwrap();
+    assert_eq!(fs::read(&killed).unwrap(), b"own 7", "a complete one was renamed by somebody");
     [&killed, &foreign].iter().for_each(|file| fs::write(file, "of the user").unwrap());
     write("own 1").unwrap();
     [killed, foreign].iter().for_each(|file| {

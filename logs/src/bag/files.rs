@@ -5,6 +5,7 @@ use crate::bounds::{self, Unpacked};
 use crate::bytes::{Bytes, MCAP, SQLITE, ZSTD};
 use crate::summary::LogError;
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::fs::{self, DirEntry};
 use std::io::{self, Read as _, Seek, Write};
 use std::path::{Component, Path};
@@ -131,7 +132,11 @@ pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>),
             unusable(format!("{first}; without this file, the files of the folder are read by name"))
         })?;
     let mut files = Vec::new();
+    let mut named = BTreeSet::new();
     for name in &information.relative_file_paths {
+        if !named.insert(name) {
+            return Err(unusable(format!("`{name}` is named twice")));
+        }
         let relative = Path::new(name);
         if !relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
             return Err(unusable(format!("`{name}` is not a file of this folder")));

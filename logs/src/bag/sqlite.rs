@@ -1,13 +1,17 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`. Of a file that is cut off, the messages before the cut are read.
 
 use super::message::{Message, MessageSource, Selection, Topic, Usable};
-use crate::bounds::MAX_NAME_BYTES;
+use crate::bounds::{self, MAX_NAME_BYTES};
 use crate::bytes::Bytes;
 use crate::summary::LogError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
 use std::collections::{BTreeMap, VecDeque};
+use std::fs;
 use std::io::{self, Read as _};
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tempfile::TempDir;
 
 /// Messages that are read at once, and their bytes.
 const PAGE_ROWS: u32 = 64;
@@ -17,10 +21,9 @@ const MIN_ROW: u64 = 4;
 /// The largest message.
 const MAX_BYTES: i64 = 64 << 20;
 
-/// A table that is a table, with columns that are stored: a view of a hostile file can have rows without end, and a column that is
-/// computed when it is read gigabytes.
-const IS_TABLE: &str = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?1 AND rootpage > 0 \
-                        AND NOT EXISTS (SELECT 1 FROM pragma_table_xinfo(?1) WHERE hidden <> 0)";
+/// The steps after which SQLite gives up a query: a hundred times those of a page of messages, and a second or two.
+const MAX_STEPS: i32 = 50_000_000;
+
 /// With the bytes of the longest of the names: SQLite knows them without reading it.
 const TOPICS: &str = "SELECT id, max(octet_length(name), octet_length(type), octet_length(serialization_format)), name, \
                       type, serialization_format FROM topics LIMIT 65536";
@@ -34,6 +37,8 @@ type Topics = BTreeMap<i64, (Arc<Topic>, bool, u64)>;
 pub(super) struct SqliteFile {
     database: Connection,
     table: MessageTable,
+    /// A copy of the database, if that is what is read.
+    _copy: Option<TempDir>,
 }
 
 /// The table of the messages, as far as it was read.
@@ -57,18 +62,21 @@ impl SqliteFile {
         let io = |why| LogError::Io { file: file.to_string(), why };
         let path = bytes.path().ok_or_else(|| io(io::ErrorKind::Unsupported.into()))?;
         let size = path.metadata().map_err(io)?.len();
-        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let database = Connection::open_with_flags(path, flags).map_err(failed)?;
-        // Nothing that a schema contains is run, and cells of a page are checked before they are used.
-        database.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON").map_err(failed)?;
+        let (uri, copy) = untouched(path).map_err(io)?;
+        let flags =
+            OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
+        let mut database = Connection::open_with_flags(uri, flags).map_err(failed)?;
+        database.progress_handler(MAX_STEPS, Some(|| true)).map_err(failed)?;
+        // Nothing that a schema contains is run, cells of a page are checked before they are used, and nothing is sorted on the disk.
+        let settings = "PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY";
+        database.execute_batch(settings).map_err(failed)?;
         let whole = whole_size(bytes).map_err(io)?.filter(|whole| *whole > size);
         if whole.is_some() {
             // With this, SQLite opens a database without its last pages. It is open for reading only: nothing is written.
             database.execute_batch("PRAGMA writable_schema = ON").map_err(failed)?;
         }
         for name in ["topics", "messages"] {
-            let count: i64 = database.query_row(IS_TABLE, [name], |row| row.get(0)).map_err(failed)?;
-            if count != 1 {
+            if !is_stored(&database, name).map_err(failed)? {
                 let why = format!("a database without a stored table `{name}`: not a bag of rosbag2");
                 return Err(LogError::Unusable { file: file.to_string(), why });
             }
@@ -84,12 +92,12 @@ impl SqliteFile {
             rows: 0,
             is_over: false,
         };
-        Ok(Self { database, table })
+        Ok(Self { database, table, _copy: copy })
     }
 
     /// Reads the next messages. The data of topics that are not wanted is skipped.
     fn turn_page(&mut self) -> Result<(), LogError> {
-        let Self { database, table } = self;
+        let Self { database, table, .. } = self;
         let file = table.file.clone();
         let failed = |error| database_error(&file, &error);
         let mut statement = database.prepare(MESSAGES).map_err(failed)?;
@@ -150,6 +158,21 @@ impl MessageTable {
     }
 }
 
+/// Whether what a query finds by a name is a table, and no view, with columns that are stored: a view of a hostile file can have rows
+/// without end, and a column that is computed when it is read gigabytes.
+fn is_stored(database: &Connection, name: &str) -> rusqlite::Result<bool> {
+    let (mut is_table, mut is_computed) = (false, false);
+    database.pragma(Some("main"), "table_list", name, |row| {
+        is_table |= row.get::<_, String>("type")? == "table";
+        Ok(())
+    })?;
+    database.pragma(Some("main"), "table_xinfo", name, |row| {
+        is_computed |= row.get::<_, i64>("hidden")? != 0;
+        Ok(())
+    })?;
+    Ok(is_table && !is_computed)
+}
+
 /// The topics by their keys, whether they are wanted, and no message of them yet.
 fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Result<Topics, LogError> {
     let failed = |error| database_error(file, &error);
@@ -168,6 +191,35 @@ fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Resu
         found.insert(row.get(0).map_err(failed)?, (Arc::new(topic), is_wanted, 0));
     }
     Ok(found)
+}
+
+/// The address by which SQLite reads a database and writes nothing, neither to it nor beside it; and the copy that it then reads: one
+/// whose last changes are in a file beside it (`-wal`) gets an index beside it.
+fn untouched(path: &Path) -> io::Result<(String, Option<TempDir>)> {
+    let beside = |ending: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    let bytes = |path: &Path| path.metadata().map_or(0, |known| known.len());
+    let encoded = |path: &Path| -> String {
+        let letters = path.as_os_str().as_bytes().iter();
+        letters.map(|letter| format!("%{letter:02x}")).collect()
+    };
+    let log = beside("-wal");
+    if bytes(&log) == 0 {
+        // What its recorder could not finish (`-journal`) is an error; else nobody writes to it.
+        let is_alone = bytes(&beside("-journal")) == 0;
+        return Ok((format!("file:{}?immutable={}", encoded(path), u8::from(is_alone)), None));
+    }
+    let copy = tempfile::tempdir()?;
+    if bounds::free_bytes(copy.path()).is_some_and(|free| free < bytes(path) + bytes(&log)) {
+        return Err(io::ErrorKind::StorageFull.into());
+    }
+    let own = copy.path().join("copy.db3");
+    fs::copy(path, &own)?;
+    fs::copy(log, copy.path().join("copy.db3-wal"))?;
+    Ok((format!("file:{}", encoded(&own)), Some(copy)))
 }
 
 /// The size of a database by its header, in bytes; `None` if the header does not say it.

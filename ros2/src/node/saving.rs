@@ -45,6 +45,9 @@ impl<L: Link> CuriousNode<L> {
         }
         let path = saved_in(&self.parameters.map_folder, name).map_err(anyhow::Error::msg)?;
         let path = with_ending(path);
+        if path.is_symlink() {
+            bail!("{}: this is a link, which could lead out of the folder for maps", path.display());
+        }
         let own = self.state_file.as_ref().and_then(|own| own.file.path().canonicalize().ok());
         if own.is_some_and(|own| path.canonicalize().is_ok_and(|path| path == own)) {
             bail!("this is the state file of the node: the service `save_state` saves to it");

@@ -31,7 +31,7 @@ fn numbered_run(
 ) -> Result<(), OutputError> {
     let folder = RunFolder::open(path)?;
     for name in results {
-        fs::write(folder.unfinished().join(name), format!("{name} {text}")).unwrap();
+        super::write(&folder, name, &format!("{name} {text}"));
     }
     faults::set(fault);
     let finished = folder.finish(&[]);

@@ -1,4 +1,5 @@
 use super::builder::*;
+use crate::Log;
 use crate::summary::TopicChoice;
 use mcap::{Compression, WriteOptions};
 use ros::LaserScan;
@@ -227,6 +228,52 @@ fn other_databases_are_refused() {
     let unknown = "CREATE TABLE topics(id, name, type, serialization_format); CREATE TABLE messages(id INTEGER PRIMARY KEY, \
                    topic_id, timestamp, data); INSERT INTO messages VALUES (1, 7, 0, x'00')";
     insta::assert_snapshot!(database(unknown), @"test: the database is damaged: row 1 of `messages`: topic 7 is not in `topics`");
+}
+
+/// In a file that is cut off, a view can have the name of a table.
+#[test]
+fn a_view_with_the_name_of_a_table_is_refused() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let sql = "CREATE TABLE topics(id, name, type, serialization_format); CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, \
+               timestamp, data); PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = NULL WHERE name = 'messages'; \
+               INSERT INTO sqlite_schema VALUES ('view', 'messages', 'messages', 0, 'CREATE VIEW messages AS WITH RECURSIVE \
+               n(rowid, topic_id, timestamp, data) AS (SELECT 1, 1, 1, x''00'' UNION ALL SELECT rowid + 1, 1, 1, x''00'' FROM n) \
+               SELECT * FROM n')";
+    rusqlite::Connection::open(file.path()).unwrap().execute_batch(sql).unwrap();
+    let mut bytes = std::fs::read(file.path()).unwrap();
+    bytes[31] += 5; // pages that are not there
+    let error = refused(&bytes);
+    assert!(error.ends_with("a database without a stored table `messages`: not a bag of rosbag2"), "{error}");
+}
+
+/// The last messages are in a file beside a database whose recorder was killed, and SQLite would write to a third one.
+#[test]
+fn nothing_is_written_beside_a_database() {
+    let (recorded, left) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let database = recorded.path().join("a.db3");
+    let bag = standing();
+    std::fs::write(&database, bag.sqlite()).unwrap();
+    let before = readings(&Log::open(&database, &TopicChoice::default()).unwrap()).len();
+    let recorder = rusqlite::Connection::open(&database).unwrap();
+    let again = "PRAGMA journal_mode = WAL; INSERT INTO messages(topic_id, timestamp, data) SELECT topic_id, timestamp, data \
+                 FROM messages";
+    recorder.execute_batch(again).unwrap();
+    for name in ["a.db3", "a.db3-wal"] {
+        std::fs::copy(recorded.path().join(name), left.path().join(name)).unwrap();
+    }
+    std::fs::write(left.path().join("a.db3-shm"), "keep").unwrap();
+    let files =
+        || ["a.db3", "a.db3-wal", "a.db3-shm"].map(|name| std::fs::read(left.path().join(name)).unwrap());
+    let old = files();
+    let log = Log::open(&left.path().join("a.db3"), &TopicChoice::default()).unwrap();
+    assert!(readings(&log).len() > before, "the last messages are read");
+    assert!(files() == old && std::fs::read_dir(left.path()).unwrap().count() == 3);
+    std::fs::remove_file(left.path().join("a.db3-wal")).unwrap();
+    assert_eq!(
+        readings(&Log::open(&left.path().join("a.db3"), &TopicChoice::default()).unwrap()).len(),
+        before
+    );
+    assert_eq!(std::fs::read(left.path().join("a.db3-shm")).unwrap(), b"keep");
 }
 
 #[test]
