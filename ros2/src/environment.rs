@@ -54,7 +54,17 @@ impl Environment {
         })?;
         // As in ROS, the older variable wins.
         let range = if is_local == Some(true) { Range::Localhost } else { range.unwrap_or_default() };
-        let is_cyclone = variable("RMW_IMPLEMENTATION").as_deref() == Some("rmw_cyclonedds_cpp");
+        // Beside others, as rmw_zenoh_cpp, the node would wait for ever.
+        let expected =
+            "rmw_fastrtps_cpp, rmw_cyclonedds_cpp, rmw_connextdds or not set, since this node speaks DDS";
+        let is_cyclone = parsed(variable, "RMW_IMPLEMENTATION", expected, |value| match value {
+            "rmw_cyclonedds_cpp" => Some(true),
+            "rmw_fastrtps_cpp" | "rmw_fastrtps_dynamic_cpp" | "rmw_connextdds" | "rmw_gurumdds_cpp" => {
+                Some(false)
+            }
+            _ => None,
+        })?;
+        let is_cyclone = is_cyclone.unwrap_or_default();
         Ok(Self { domain: domain.unwrap_or_default(), range, is_cyclone })
     }
 }
@@ -99,6 +109,7 @@ mod tests {
         let error = |name, value| read(&[(name, value)]).unwrap_err();
         insta::assert_snapshot!(error("ROS_DOMAIN_ID", "233"), @"ROS_DOMAIN_ID must be a whole number from 0 to 232, not `233`");
         insta::assert_snapshot!(error("ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"), @"ROS_AUTOMATIC_DISCOVERY_RANGE must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT, not `localhost`");
+        insta::assert_snapshot!(error("RMW_IMPLEMENTATION", "rmw_zenoh_cpp"), @"RMW_IMPLEMENTATION must be rmw_fastrtps_cpp, rmw_cyclonedds_cpp, rmw_connextdds or not set, since this node speaks DDS, not `rmw_zenoh_cpp`");
         assert_eq!(error("ROS_LOCALHOST_ONLY", "yes"), "ROS_LOCALHOST_ONLY must be 0 or 1, not `yes`");
     }
 }

@@ -98,7 +98,8 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
             .map_err(input)?;
     }
     parameters.check().map_err(input)?;
-    let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
+    let environment = Environment::read(|name| Some(std::env::var_os(name)?.to_string_lossy().into_owned()))
+        .map_err(input)?;
     let wiring = curious_wiring(&parameters, &names, &ros).map_err(input)?;
     let signals = Signals { stop: interrupt_flag()?, ..Signals::default() };
     #[cfg(unix)]

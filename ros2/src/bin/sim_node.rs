@@ -72,7 +72,8 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     }
     note_unused_files(&names, &ros);
     let world = worldfile::shipped::load(&args.world).map_err(input)?;
-    let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
+    let environment = Environment::read(|name| Some(std::env::var_os(name)?.to_string_lossy().into_owned()))
+        .map_err(input)?;
     let wiring = simulation_wiring(&names, &ros).map_err(input)?;
     let stop = interrupt_flag()?;
     let link = DdsLink::open(&wiring, &environment)?;
