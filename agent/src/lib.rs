@@ -23,7 +23,7 @@ mod visibility;
 pub use agent::{Agent, GoalSelector, StrategyState};
 pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
 pub use goal_sampler::Goal;
-pub use policy::{PURPOSES, Parts, Policy};
+pub use policy::{Parts, Policy};
 pub use settings::{AgentSettings, Reward};
 pub use situation::{Features, Situation, Travel};
 pub use strategies::{FreshMap, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy};

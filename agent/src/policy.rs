@@ -102,11 +102,6 @@ impl Policy {
         &BUILT_IN
     }
 
-    /// The policy for one of the [`PURPOSES`].
-    pub fn for_purpose(name: &str) -> Option<Self> {
-        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| policy.parse().ok())
-    }
-
     /// The name on the command line and in files.
     pub fn name(&self) -> &'static str {
         self.name
@@ -122,14 +117,6 @@ impl Policy {
         (self.build)(settings, rng)
     }
 }
-
-/// What a robot explores for: the name of a purpose, its description, and the name of the policy that is made for it.
-/// `docs/strategies.md` shows in which worlds it is better than the default.
-pub const PURPOSES: [[&str; 3]; 3] = [
-    ["fresh-map", "To know at any time what is blocked", "fresh-map"],
-    ["learn-rates", "To learn how often every cell changes", "information-gain"],
-    ["paper", "What the paper's robot does", "curious"],
-];
 
 impl Default for Policy {
     fn default() -> Self {
@@ -158,14 +145,6 @@ mod tests {
             assert_eq!(file.strategy, *policy);
         }
         assert_eq!(Policy::default().name(), "curious");
-    }
-
-    #[test]
-    fn every_purpose_has_a_policy() {
-        for [name, _, policy] in PURPOSES {
-            assert_eq!(Policy::for_purpose(name).unwrap().name(), policy);
-        }
-        assert_eq!(Policy::for_purpose("fame"), None);
     }
 
     #[test]

@@ -43,12 +43,9 @@ impl From<OutputError> for Failure {
 /// The failure for an output that cannot be opened: it needs another name, unless another run or the disk is the reason.
 pub fn not_opened(error: OutputError) -> Failure {
     let is_of_kind = matches!(error.why.kind(), ErrorKind::ResourceBusy | ErrorKind::StorageFull);
-    match error.why.raw_os_error() {
-        // An error of the disk, too little memory, too many open files.
-        Some(5 | 12 | 23 | 24) => Failure::Run(error.into()),
-        _ if is_of_kind => Failure::Run(error.into()),
-        _ => input(error),
-    }
+    // An error of the disk, too little memory, too many open files.
+    let is_of_system = matches!(error.why.raw_os_error(), Some(5 | 12 | 23 | 24));
+    if is_of_kind || is_of_system { Failure::Run(error.into()) } else { input(error) }
 }
 
 /// Opens the folder of `--out`, and tells the user what it has besides the results of an earlier run.

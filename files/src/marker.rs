@@ -28,9 +28,7 @@ pub(super) const EARLIER: &str = ".earlier";
 /// Names that no result has.
 const RESERVED: [&str; 6] = [RESULTS, FILES, UNFINISHED, LOCK, JOURNAL, EARLIER];
 /// The endings of the names of results.
-const ENDINGS: [&str; 14] = [
-    "rrd", "json", "html", "csv", "pgm", "yaml", "npy", "tum", "png", "svg", "gif", "mcap", "toml", "geojson",
-];
+const ENDINGS: &str = "rrd json html csv pgm yaml npy tum png svg gif mcap toml geojson";
 /// The schema of a marker; count up when its layout changes.
 const SCHEMA: u32 = 1;
 
@@ -84,7 +82,7 @@ impl Marker {
 
     /// Whether all of its names can be those of results. It can come from a stranger.
     pub(super) fn lists_results(&self) -> bool {
-        let has_ending = |ending: &OsStr| ENDINGS.iter().any(|known| ending == *known);
+        let has_ending = |ending: &OsStr| ENDINGS.split(' ').any(|known| ending == known);
         self.files.keys().all(|name| Path::new(name).extension().is_some_and(has_ending))
     }
 

@@ -5,7 +5,7 @@ mod choices;
 pub(crate) use choices::{Mode, Navigator, When};
 
 use crate::value::{Given, Value};
-use agent::{PURPOSES, Policy};
+use agent::Policy;
 use anyhow::{anyhow, bail};
 use choices::Slot;
 use interfaces::{PoseMode, SettingsCheck};
@@ -127,10 +127,8 @@ parameters! {
     Unconfigured "acc_lim_x", acc_lim_x_mps2: f64 = 2.5;
     /// Maximum angular acceleration, rad/s².
     Unconfigured "acc_lim_theta", acc_lim_theta_radps2: f64 = 3.2;
-    /// How goals are selected; empty: as is best for `purpose`.
+    /// How goals are selected, by the name of a strategy; empty: `curious`.
     Unconfigured "strategy", strategy: String = String::new();
-    /// What the robot explores for: `fresh-map`, `learn-rates` or `paper`; empty: `paper`. Not together with `strategy`.
-    Unconfigured "purpose", purpose: String = String::new();
     /// Whether the node begins to work when it starts; otherwise it waits for a lifecycle manager, unconfigured.
     Start "autostart", autostart: bool = true;
     /// The seed of the random decisions.
@@ -281,28 +279,17 @@ impl Parameters {
         Ok(())
     }
 
-    /// The strategy: as `strategy` says, or else as is best for `purpose`.
+    /// The strategy.
     ///
     /// # Errors
     ///
-    /// When there is no such strategy or purpose, or when both are given.
+    /// When there is no such strategy.
     pub(crate) fn policy(&self) -> anyhow::Result<Policy> {
-        let Self { strategy, purpose, .. } = self;
-        match (strategy.as_str(), purpose.as_str()) {
-            ("", "") => Ok(Policy::default()),
-            ("", name) => {
-                let known = || PURPOSES.map(|[name, ..]| name).join(", ");
-                Policy::for_purpose(name).ok_or_else(|| unknown("purpose", known(), name))
-            }
-            (name, "") => {
-                let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");
-                name.parse().map_err(|_| unknown("strategy", known(), name))
-            }
-            _ => bail!(
-                "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them \
-                 empty"
-            ),
+        if self.strategy.is_empty() {
+            return Ok(Policy::default());
         }
+        let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");
+        self.strategy.parse().map_err(|_| unknown("strategy", known(), &self.strategy))
     }
 
     fn slot(&mut self, name: &str) -> anyhow::Result<&mut dyn Slot> {

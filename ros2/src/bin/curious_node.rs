@@ -1,6 +1,6 @@
 //! Maps what a live robot sees, and where the place changes; can explore.
 
-use agent::PURPOSES;
+use agent::Policy;
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -26,23 +26,18 @@ struct Args {
     /// map: only maps, while someone else drives; explore: drives to where looking is worth most
     #[arg(long, value_parser = ["map", "explore"])]
     mode: Option<String>,
-    /// With the mode explore, what the robot explores for; the same as `--ros-args -p purpose:=PURPOSE`
-    ///
-    /// It names the strategy that was best for it in our trials, where no parameter `strategy` is given.
-    #[arg(long, value_parser = purposes())]
-    purpose: Option<String>,
+    /// With the mode explore, where the robot goes; the same as `--ros-args -p strategy:=STRATEGY`
+    #[arg(long, value_parser = strategies())]
+    strategy: Option<String>,
     /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
     /// service `~/save_state` is called
     #[arg(long, value_name = "FILE", value_parser = output_file())]
     state: Option<PathBuf>,
 }
 
-fn purposes() -> PossibleValuesParser {
-    PossibleValuesParser::new(
-        PURPOSES.map(|[name, description, policy]| {
-            PossibleValue::new(name).help(format!("{description}: {policy}"))
-        }),
-    )
+fn strategies() -> PossibleValuesParser {
+    let value = |policy: &Policy| PossibleValue::new(policy.name()).help(policy.description());
+    PossibleValuesParser::new(Policy::built_in().iter().map(value))
 }
 
 /// Topics, services, parameters, and more.
@@ -73,7 +68,7 @@ ENVIRONMENT
 
 EXAMPLES
   curious_node --state office.state
-  curious_node --mode explore --purpose fresh-map --state office.state
+  curious_node --mode explore --strategy fresh-map --state office.state
   curious_node --mode explore --ros-args -p robot_radius:=0.18 -p max_vel_x:=0.5 -r scan:=/front/scan
   curious_node --mode explore --ros-args -p navigator:=nav2 -r __ns:=/robot1
   curious_node --ros-args --params-file mapping.yaml
@@ -91,7 +86,7 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     let mut parameters = Parameters::default();
     parameters.set_all(ros.parameters_of(&names.full_name())).map_err(input)?;
     note_unused_files(&names, &ros);
-    for (name, value) in [("mode", &args.mode), ("purpose", &args.purpose)] {
+    for (name, value) in [("mode", &args.mode), ("strategy", &args.strategy)] {
         value
             .iter()
             .try_for_each(|value| parameters.set(name, &Value::Text(value.clone())))
@@ -132,7 +127,7 @@ mod tests {
 
     #[test]
     fn every_flag_refuses_a_wrong_value_by_its_name() {
-        let wrong = [("mode", "sleep"), ("purpose", "fame"), ("state", "/")];
+        let wrong = [("mode", "sleep"), ("strategy", "fame"), ("state", "/")];
         for argument in
             Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
         {
