@@ -216,7 +216,7 @@ fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), Outp
 }
 
 /// Creates the file with the first temporary name that is free. What a killed run has left of a file with a
-/// proof is removed, unless it is complete: then somebody has given it this name.
+/// proof is removed, unless it is complete: then somebody has given it this name. An empty one is used again.
 fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File, OsString), OutputError> {
     let path = folder.join(name);
     for partial in (1..=MAX_LEFT).map(|number| temporary_name(Path::new(name), number)) {
@@ -231,7 +231,7 @@ fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File,
                 let is_part = is_read && start == proof.start && (&left).rewind().is_ok();
                 is_part && !(proof.is_intact)(&left)
             };
-            if proof.is_some_and(is_left) {
+            if left.metadata().is_ok_and(|known| known.len() == 0) || proof.is_some_and(is_left) {
                 folder.remove(&partial)?;
             }
         }

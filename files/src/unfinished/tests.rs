@@ -41,7 +41,7 @@ fn a_file_appears_when_it_is_complete() {
 fn what_killed_runs_have_left_of_a_file_stays() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
-    for content in ["", "a part", "another"] {
+    for content in ["", "", "a part", "another", "one more"] {
         let mut file = UnfinishedFile::create(&path).unwrap();
         file.write_all(content.as_bytes()).unwrap();
         let Target { folder, partial, .. } = file.target.take().unwrap();
