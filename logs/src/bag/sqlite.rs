@@ -6,7 +6,7 @@ use crate::bytes::Bytes;
 use crate::summary::LogError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
 use std::collections::{BTreeMap, VecDeque};
-use std::fs;
+use std::ffi::OsString;
 use std::io::{self, Read as _};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -197,9 +197,7 @@ fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Resu
 /// whose last changes are in a file beside it (`-wal`) gets an index beside it.
 fn untouched(path: &Path) -> io::Result<(String, Option<TempDir>)> {
     let beside = |ending: &str| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(ending);
-        PathBuf::from(name)
+        PathBuf::from_iter([[path.as_os_str(), ending.as_ref()].into_iter().collect::<OsString>()])
     };
     let bytes = |path: &Path| path.metadata().map_or(0, |known| known.len());
     let encoded = |path: &Path| -> String {
@@ -216,10 +214,12 @@ fn untouched(path: &Path) -> io::Result<(String, Option<TempDir>)> {
     if bounds::free_bytes(copy.path()).is_some_and(|free| free < bytes(path) + bytes(&log)) {
         return Err(io::ErrorKind::StorageFull.into());
     }
-    let own = copy.path().join("copy.db3");
-    fs::copy(path, &own)?;
-    fs::copy(log, copy.path().join("copy.db3-wal"))?;
-    Ok((format!("file:{}", encoded(&own)), Some(copy)))
+    for (from, name) in [(path, "copy.db3"), (&log, "copy.db3-wal")] {
+        let mut to = tempfile::Builder::new().prefix(name).rand_bytes(0).tempfile_in(&copy)?;
+        io::copy(&mut files::open(from)?, &mut to)?;
+        to.keep()?; // until the folder is removed
+    }
+    Ok((format!("file:{}", encoded(&copy.path().join("copy.db3"))), Some(copy)))
 }
 
 /// The size of a database by its header, in bytes; `None` if the header does not say it.
