@@ -5,7 +5,7 @@ use std::io::Write;
 #[test]
 fn every_parameter_has_a_name_a_value_and_a_slot() {
     let list = Parameters::default().list();
-    assert_eq!(list.len(), 38);
+    assert_eq!(list.len(), 37);
     let mut set = Parameters { seed: 5, mode: Mode::Explore, ..Parameters::default() };
     for (name, value) in &list {
         set.set(name, value).unwrap();
