@@ -126,7 +126,7 @@ impl Folder {
         })
     }
 
-    /// Gives a file another name, here or in another folder, which nothing has.
+    /// Gives a file a name that nothing has, here or in another folder.
     pub(super) fn rename(
         &self,
         name: impl AsRef<Path>,
@@ -145,7 +145,7 @@ impl Folder {
         })
     }
 
-    /// Gives a file the name of another one in the folder, which is removed.
+    /// Puts the file `by` in the place of the file `name`, which is lost.
     pub(super) fn replace(&self, name: impl AsRef<Path>, by: impl AsRef<Path>) -> Result<(), OutputError> {
         let (name, by) = (name.as_ref(), by.as_ref());
         self.run(name, || Ok(rustix::fs::renameat(&self.handle, by, &self.handle, name)?))

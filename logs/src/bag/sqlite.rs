@@ -21,7 +21,7 @@ const MIN_ROW: u64 = 4;
 /// The largest message.
 const MAX_BYTES: i64 = 64 << 20;
 
-/// The steps after which SQLite gives up a query: a hundred times those of a page of messages, and a second or two.
+/// The steps of SQLite's virtual machine after which a query is given up: a page of messages takes far fewer.
 const MAX_STEPS: i32 = 50_000_000;
 
 /// With the bytes of the longest of the names: SQLite knows them without reading it.
@@ -196,9 +196,8 @@ fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Resu
 /// The address by which SQLite reads a database and writes nothing, neither to it nor beside it; and the copy that it then reads: one
 /// whose last changes are in a file beside it (`-wal`) gets an index beside it.
 fn untouched(path: &Path) -> io::Result<(String, Option<TempDir>)> {
-    let beside = |ending: &str| {
-        PathBuf::from_iter([[path.as_os_str(), ending.as_ref()].into_iter().collect::<OsString>()])
-    };
+    let beside =
+        |ending: &str| PathBuf::from([path.as_os_str(), ending.as_ref()].into_iter().collect::<OsString>());
     let bytes = |path: &Path| path.metadata().map_or(0, |known| known.len());
     let encoded = |path: &Path| -> String {
         let letters = path.as_os_str().as_bytes().iter();
