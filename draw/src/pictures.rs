@@ -84,26 +84,17 @@ pub fn plan_on(sheet: &Sheet<impl DrawingBackend>, pen: Pen, scene: &Scene) -> D
     plan::draw(&panel, sheet, scene)
 }
 
-/// A scene without words, on the map of the robot if there is one, with discs as goals: centers and radii, m. The longer side has
-/// `size` pixels.
+/// A scene without words, with discs as goals: centers and radii, m. The longer side has `size` pixels.
 ///
 /// # Errors
 /// When the picture cannot be drawn.
-pub fn bare(
-    scene: &Scene,
-    map: Option<&Mapper>,
-    goals: &[(Point2<f64>, f64)],
-    size: u32,
-) -> Result<Canvas, PictureError> {
+pub fn bare(scene: &Scene, goals: &[(Point2<f64>, f64)], size: u32) -> Result<Canvas, PictureError> {
     let size_m = extent(&scene.frame).1;
     let pixels_per_m = f64::from(size.clamp(16, 4096)) / size_m.max();
     let size = [size_m.x, size_m.y].map(|length_m| (length_m * pixels_per_m).round().max(1.0) as u32);
     let panel = Panel::of_film(&scene.frame, false);
     draw(&scene.title, size, |area| {
         let chart = panel.bare(area)?;
-        if let Some(map) = map {
-            panel.cells(&chart, Layer::Interval, &Layer::Interval.classes(map))?;
-        }
         plan::ground(&chart, scene)?;
         for (center, radius_m) in goals {
             let disc = plan::arc(&Translation2::from(*center).into(), *radius_m, TAU);

@@ -1,16 +1,16 @@
-//! How fast fleets and tasks are in Rust alone, per second of CPU time: what `python/examples/speed.py --rust` compares with.
+//! How fast fleets and the driving task are in Rust alone, per second of CPU time: what `python/examples/speed.py --rust` compares with.
 //!
 //! ```sh
 //! cargo build --release -p curious-environments --example speed
 //! target/release/examples/speed fleet WORLD.toml SECONDS
-//! target/release/examples/speed drive|explore WORLDS THREADS STEPS
+//! target/release/examples/speed drive WORLDS THREADS STEPS
 //! ```
 //!
-//! It prints one line: robot steps of 0.1 s (or steps of tasks) per second of CPU time, and per second.
+//! It prints one line: robot steps of 0.1 s (or steps of the task) per second of CPU time, and per second.
 
-use environments::{Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Task};
+use environments::{Batch, Drive, DrivePlace, DriveSettings};
 use interfaces::Twist;
-use sim::physics::{Fleet, WorldSpec};
+use sim::physics::Fleet;
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
@@ -26,13 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let place = Arc::new(DrivePlace::new(&environments::driving_hall(), DriveSettings::default())?);
             steps((0..number(1)?).map(|_| Drive::new(&place)).collect(), number(2)?, number(3)?)
         }
-        Some("explore") => {
-            let houses: Vec<WorldSpec> = (0..8).map(WorldSpec::generate_house).collect();
-            let place = Arc::new(ExplorePlace::new(&houses, ExploreSettings::default())?);
-            let tasks: Result<_, _> = (0..number(1)?).map(|_| Explore::new(&place)).collect();
-            steps(tasks?, number(2)?, number(3)?)
-        }
-        _ => Err("the first argument is fleet, drive or explore".into()),
+        _ => Err("the first argument is fleet or drive".into()),
     }
 }
 
@@ -60,7 +54,7 @@ fn fleet(path: &str, seconds: usize) -> Result<(), Box<dyn Error>> {
 }
 
 /// Steps with random actions, forward, with resets.
-fn steps<T: Task + 'static>(tasks: Vec<T>, threads: usize, steps: usize) -> Result<(), Box<dyn Error>> {
+fn steps(tasks: Vec<Drive>, threads: usize, steps: usize) -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     let (count, mut state) = (tasks.len(), 1_u64);
     let mut uniform = || {

@@ -1,11 +1,15 @@
 //! Many tasks, stepped by one call.
 
-use crate::task::{ACTIONS, ROUNDING, Results, Task, TaskError};
+use crate::drive::Drive;
+use crate::results::{ACTIONS, Results, TaskError};
 use interfaces::{from_bytes, to_bytes};
 use rayon::prelude::*;
 use sim::physics::SnapshotError;
 
-/// A number of tasks of the same kind.
+/// What rounding may add to an action.
+const ROUNDING: f32 = 1e-6;
+
+/// A number of tasks.
 pub struct Batch {
     slots: Vec<Slot>,
     /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one
@@ -17,7 +21,7 @@ pub struct Batch {
 
 /// A task, the seed of its episode, and the results of its last step.
 struct Slot {
-    task: Box<dyn Task>,
+    task: Drive,
     seed: u64,
     results: Results,
 }
@@ -44,11 +48,13 @@ impl Slot {
 }
 
 impl Batch {
-    /// A batch of tasks of the same kind and place; at least one. The tasks must be reset before the first step.
-    pub fn new(tasks: impl IntoIterator<Item = impl Task + 'static>) -> Self {
-        let slots =
-            tasks.into_iter().map(|task| Slot { results: Results::of(&task), seed: 0, task: Box::new(task) });
-        let slots: Vec<Slot> = slots.collect();
+    /// A batch of tasks in the same place; at least one. The tasks must be reset before the first step.
+    pub fn new(tasks: impl IntoIterator<Item = Drive>) -> Self {
+        let slot = |task: Drive| {
+            let results = Results::new(task.agents(), task.observation_len(), Drive::INFO_NAMES.len());
+            Slot { task, seed: 0, results }
+        };
+        let slots: Vec<Slot> = tasks.into_iter().map(slot).collect();
         Self { is_parallel: slots.len() > 1, slots, is_autoreset: true }
     }
 
@@ -58,13 +64,13 @@ impl Batch {
     }
 
     /// A task.
-    pub fn task(&self, index: usize) -> &dyn Task {
-        &*self.slots[index].task
+    pub fn task(&self, index: usize) -> &Drive {
+        &self.slots[index].task
     }
 
     /// The number of values of the observation of an agent.
     pub fn observation_len(&self) -> usize {
-        self.slots.first().map_or(0, |first| first.results.observations.len() / first.task.agents())
+        self.slots.first().map_or(0, |first| first.task.observation_len())
     }
 
     /// Calls `run` with every slot and its input.
@@ -118,8 +124,8 @@ impl Batch {
     }
 
     /// The state of one task as bytes, with the seed of its episode.
-    pub fn snapshot(&mut self, index: usize) -> Vec<u8> {
-        let Slot { task, seed, .. } = &mut self.slots[index];
+    pub fn snapshot(&self, index: usize) -> Vec<u8> {
+        let Slot { task, seed, .. } = &self.slots[index];
         to_bytes(&(*seed, task.snapshot()))
     }
 
@@ -127,7 +133,7 @@ impl Batch {
     ///
     /// # Errors
     ///
-    /// When the bytes are not such a snapshot. The task must be reset then.
+    /// When the bytes are not such a snapshot. Nothing is changed then.
     pub fn restore(&mut self, index: usize, snapshot: &[u8]) -> Result<&[f32], SnapshotError> {
         let (saved, state): (u64, Vec<u8>) = from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
         let Slot { task, seed, results } = &mut self.slots[index];

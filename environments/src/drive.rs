@@ -2,12 +2,14 @@
 
 use crate::memory::{LAYER, Memory};
 use crate::place::DrivePlace;
-use crate::task::{ACTIONS, Part, Results, Task, present_scene, twist, write_scan, write_state};
+use crate::results::{ACTIONS, Results};
 use draw::canvas::{Canvas, PictureError};
 use draw::pictures::bare;
+use draw::scene::Scene;
+use evaluation::scenes::Displayed;
 use interfaces::{Purpose, RandomStream, Twist, from_bytes, to_bytes};
 use nalgebra::{Point2, Vector2};
-use sim::physics::{Fleet, SnapshotError};
+use sim::physics::{DriveLimits, Fleet, SnapshotError};
 use std::sync::Arc;
 
 /// The distance ahead on the shortest path at which the point lies that the observation shows, m.
@@ -49,6 +51,9 @@ struct Progress {
 }
 
 impl Drive {
+    /// The names of the values of [`Drive::info`].
+    pub const INFO_NAMES: [&'static str; 3] = ["is_success", "collisions", "distance_m"];
+
     /// The task in a place. It must be reset before the first step.
     pub fn new(place: &Arc<DrivePlace>) -> Self {
         let agents = vec![Progress::default(); place.robots.len()];
@@ -70,25 +75,20 @@ impl Drive {
         }
     }
 
-    /// The numbers of the observation of an agent.
-    fn observation_len(&self) -> usize {
-        self.place.beams() + STATE + if self.memories.is_empty() { 0 } else { 2 * LAYER }
-    }
-}
-
-impl Task for Drive {
-    fn agents(&self) -> usize {
+    /// The number of agents; at least one. All values for agents are slices with one part per agent, in this order.
+    pub fn agents(&self) -> usize {
         self.place.robots.len()
     }
 
-    fn kind(&self) -> &'static str {
-        "driving environment"
+    /// The number of values of the observation of an agent.
+    pub fn observation_len(&self) -> usize {
+        self.place.beams() + STATE + if self.memories.is_empty() { 0 } else { 2 * LAYER }
     }
 
-    fn parts(&self) -> Vec<Part> {
-        let beams = self.place.beams();
+    /// The names and lengths of the parts of the observation of an agent, one after the other.
+    pub fn slices(&self) -> Vec<(&'static str, usize)> {
         let mut slices = vec![
-            ("scan", beams),
+            ("scan", self.place.beams()),
             ("goal_distance", 1),
             ("goal_direction", 2),
             ("path_direction", 2),
@@ -97,14 +97,11 @@ impl Task for Drive {
         if !self.memories.is_empty() {
             slices.extend([("visited", LAYER), ("seen", LAYER)]);
         }
-        vec![Part { name: "observation", shape: vec![self.observation_len()], slices }]
+        slices
     }
 
-    fn info_names(&self) -> &'static [&'static str] {
-        &["is_success", "collisions", "distance_m"]
-    }
-
-    fn reset(&mut self, seed: u64) {
+    /// Begins an episode. Everything random in it follows from `seed`.
+    pub fn reset(&mut self, seed: u64) {
         let Self { place, fleet, agents, memories, steps } = self;
         memories.iter_mut().for_each(Memory::clear);
         fleet.reset(seed);
@@ -123,7 +120,9 @@ impl Task for Drive {
         self.look();
     }
 
-    fn step(&mut self, actions: &[f32], results: &mut Results) {
+    /// Simulates one step. An agent whose part of the episode is over stands still, and its action is ignored.
+    /// Writes rewards and ends. The actions are [`ACTIONS`] shares of the maximum velocity per agent, from −1 to 1.
+    pub fn step(&mut self, actions: &[f32], results: &mut Results) {
         let Self { place, fleet, agents, steps, .. } = self;
         let settings = &place.settings;
         for ((of, progress), action) in place.robots.iter().zip(&*agents).zip(actions.chunks(ACTIONS)) {
@@ -164,7 +163,8 @@ impl Task for Drive {
         self.look();
     }
 
-    fn observe(&mut self, observations: &mut [f32]) {
+    /// Writes the observations of all agents.
+    pub fn observe(&mut self, observations: &mut [f32]) {
         let place = &*self.place;
         let beams = place.beams();
         let parts = observations.chunks_mut(self.observation_len()).zip(&place.robots).zip(&self.agents);
@@ -201,12 +201,16 @@ impl Task for Drive {
                 robot.twist.linear_mps / spec.drive.max_linear_mps,
                 robot.twist.angular_radps / spec.drive.max_angular_radps,
             ];
-            write_state(state, values);
+            for (state, value) in state.iter_mut().zip(values) {
+                *state = value.clamp(-1.0, 1.0) as f32;
+            }
         }
     }
 
-    fn info(&self, info: &mut [f32]) {
-        for (agent, (info, progress)) in info.chunks_mut(3).zip(&self.agents).enumerate() {
+    /// Writes what is known about the last step: one value per name and agent.
+    pub fn info(&self, info: &mut [f32]) {
+        for (agent, (info, progress)) in info.chunks_mut(Self::INFO_NAMES.len()).zip(&self.agents).enumerate()
+        {
             let at = at(&self.fleet, self.place.robots[agent].robot);
             let away_m = nalgebra::distance(&at, &self.place.goal(agent, progress.goal));
             let values =
@@ -215,18 +219,29 @@ impl Task for Drive {
         }
     }
 
-    fn picture(&self, size: u32) -> Result<Canvas, PictureError> {
+    /// The world from above, at most `size` pixels wide and high.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be drawn.
+    pub fn picture(&self, size: u32) -> Result<Canvas, PictureError> {
         let place = &self.place;
         let goals = self.agents.iter().enumerate().map(|(agent, of)| place.goal(agent, of.goal));
         let goals: Vec<_> = goals.map(|goal| (goal, place.settings.goal_radius_m)).collect();
-        bare(&present_scene(&self.fleet), None, &goals, size)
+        bare(&present_scene(&self.fleet), &goals, size)
     }
 
-    fn snapshot(&mut self) -> Vec<u8> {
+    /// The state as bytes.
+    pub fn snapshot(&self) -> Vec<u8> {
         to_bytes(&(self.fleet.snapshot(), &self.agents, &self.memories, self.steps))
     }
 
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
+    /// Returns to the state of a snapshot of a task with the same settings.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are not such a snapshot. Nothing is changed then.
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
         type Saved = (Vec<u8>, Vec<Progress>, Vec<Memory>, u32);
         let (fleet, agents, memories, steps): Saved =
             from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
@@ -247,4 +262,30 @@ impl Task for Drive {
 /// The position of a robot, m.
 fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
     fleet.robot(robot).map_or(Point2::origin(), |robot| robot.pose.translation.vector.into())
+}
+
+/// Writes ranges as shares of the maximum range: 1 without a return (+∞), 0 where the measurement is invalid or too close
+/// (−∞).
+fn write_scan(to: &mut [f32], ranges_m: &[f32], range_max_m: f64) {
+    let scale = 1.0 / range_max_m as f32;
+    for (value, range_m) in to.iter_mut().zip(ranges_m) {
+        *value = if range_m.is_nan() { 0.0 } else { (range_m * scale).clamp(0.0, 1.0) };
+    }
+}
+
+/// The velocity that an agent wants: its actions are shares of the maximum.
+fn twist(drive: &DriveLimits, actions: &[f32]) -> Twist {
+    let [linear, angular] = [0, 1].map(|index| f64::from(actions.get(index).copied().unwrap_or(0.0)));
+    Twist { linear_mps: linear * drive.max_linear_mps, angular_radps: angular * drive.max_angular_radps }
+}
+
+/// The robots and the obstacles as they are now.
+fn present_scene(fleet: &Fleet) -> Scene {
+    let mut scene = fleet.spec().scene();
+    scene.obstacles.iter_mut().for_each(|obstacle| obstacle.outline.clear());
+    for obstacle in fleet.obstacles() {
+        scene.obstacles[obstacle.index].outline = obstacle.corners.to_vec();
+    }
+    fleet.robots().for_each(|robot| scene.robots[robot.index].pose = robot.pose);
+    scene
 }

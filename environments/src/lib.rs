@@ -1,7 +1,7 @@
-//! Tasks for learners: driving to goals among moving things, and exploring a place that changes. It must not
-//! know the interfaces of Gymnasium or PettingZoo, which the Python package adds.
+//! A task for learners: driving to goals among moving things. It must not know the interfaces of Gymnasium or PettingZoo,
+//! which the Python package adds.
 //!
-//! A [`Task`] is one world with its rewards. A [`Batch`] steps many tasks with one call, on several threads; a task
+//! A [`Drive`] is one world with its rewards. A [`Batch`] steps many tasks with one call, on several threads; a task
 //! that is over is reset in the same call. The same seeds and actions give the same bits, alone or in a batch, on any
 //! number of threads.
 //!
@@ -22,18 +22,14 @@
 mod batch;
 mod distance;
 mod drive;
-mod explore;
-mod explore_place;
 mod memory;
 mod place;
-mod task;
+mod results;
 
 pub use batch::Batch;
 pub use drive::Drive;
-pub use explore::Explore;
-pub use explore_place::{ExplorePlace, ExploreSettings};
 pub use place::{DrivePlace, DriveSettings};
-pub use task::{ACTIONS, Part, Results, Task, TaskError};
+pub use results::{ACTIONS, Results, TaskError};
 
 use sim::physics::FleetSpec;
 

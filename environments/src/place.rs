@@ -1,7 +1,7 @@
 //! The place of driving tasks: what is the same in every episode, built once and shared.
 
 use crate::distance::Distances;
-use crate::task::{TaskError, check_rewards};
+use crate::results::TaskError;
 use draw::scene::extent;
 use interfaces::{GridFrame, RandomStream, SettingsCheck, SettingsError};
 use nalgebra::Point2;
@@ -77,7 +77,12 @@ impl DrivePlace {
         let expected = spec.robots[*first].laser.beams;
         let agent = |&robot: &usize| {
             let name = &spec.robots[robot].name;
-            check_beams(&format!("the robot `{name}`"), spec.robots[robot].laser.beams, expected)?;
+            let beams = spec.robots[robot].laser.beams;
+            if beams != expected {
+                return Err(TaskError::World(format!(
+                    "the laser of the robot `{name}` has {beams} beams, and that of the first one has {expected}"
+                )));
+            }
             let no_space =
                 || format!("the robot `{name}` of the world `{world}` has no free space around its start");
             DrivenRobot::new(&coarse, robot).ok_or_else(|| TaskError::World(no_space()))
@@ -124,12 +129,6 @@ impl DrivePlace {
         }
         best
     }
-}
-
-/// Checks that the laser of a robot has as many beams as that of the first one.
-pub(crate) fn check_beams(of: &str, found: usize, expected: usize) -> Result<(), TaskError> {
-    let other = || format!("the laser of {of} has {found} beams, and that of the first one has {expected}");
-    if found == expected { Ok(()) } else { Err(TaskError::World(other())) }
 }
 
 impl DrivenRobot {
@@ -209,6 +208,8 @@ impl DriveSettings {
             ("collision_reward", self.collision_reward),
             ("step_reward", self.step_reward),
         ];
-        check_rewards(&check, &rewards)
+        rewards
+            .into_iter()
+            .try_for_each(|(key, reward)| check.within(key, reward, -1e6..=1e6, "from -1000000 to 1000000"))
     }
 }

@@ -1,10 +1,7 @@
 //! The tasks as a learner uses them.
 
-use environments::{
-    Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Results, Task,
-    TaskError, driving_hall,
-};
-use sim::physics::{SnapshotError, WorldSpec};
+use environments::{Batch, Drive, DrivePlace, DriveSettings, Results, TaskError, driving_hall};
+use sim::physics::SnapshotError;
 use std::sync::Arc;
 
 /// An action that depends on the environment and the step.
@@ -24,13 +21,8 @@ fn drive_place(settings: DriveSettings) -> Arc<DrivePlace> {
     Arc::new(DrivePlace::new(&driving_hall(), settings).unwrap())
 }
 
-fn explore_place(settings: ExploreSettings) -> Arc<ExplorePlace> {
-    let houses: Vec<WorldSpec> = [3, 5].map(WorldSpec::generate_house).into();
-    Arc::new(ExplorePlace::new(&houses, settings).unwrap())
-}
-
 /// The bits of every step of a batch, environment by environment, with episodes that end in between.
-fn run<T: Task + 'static>(tasks: Vec<T>, first: usize, threads: usize, steps: usize) -> Vec<Vec<u32>> {
+fn run(tasks: Vec<Drive>, first: usize, threads: usize, steps: usize) -> Vec<Vec<u32>> {
     let count = tasks.len();
     let mut batch = Batch::new(tasks);
     batch.is_parallel = threads > 1;
@@ -64,17 +56,16 @@ fn alone_and_in_a_batch_on_any_number_of_threads_the_bits_are_the_same() {
     for (index, row) in together.iter().enumerate() {
         assert_eq!(run(tasks(1), index, 1, 150)[0], *row, "environment {index}");
     }
-    let settings = ExploreSettings { max_steps: 25, beams: Some(60), ..ExploreSettings::default() };
-    let place = explore_place(settings);
-    let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
-    let together = run(tasks(4), 0, 1, 60);
-    assert_eq!(run(tasks(4), 0, 2, 60), together);
-    assert_eq!(run(tasks(1), 2, 1, 60)[0], together[2]);
 }
 
 #[test]
 fn a_snapshot_goes_on_bit_by_bit() {
-    fn check(mut here: Batch, mut there: Batch) {
+    let mut bare = driving_hall();
+    bare.obstacles.clear();
+    let elsewhere = Arc::new(DrivePlace::new(&bare, DriveSettings::default()).unwrap());
+    for shows_memory in [false, true] {
+        let place = drive_place(DriveSettings { shows_memory, ..DriveSettings::default() });
+        let [mut here, mut there] = [0, 1].map(|_| Batch::new([Drive::new(&place)]));
         here.reset(&[5]).unwrap();
         there.reset(&[6]).unwrap();
         for step in 0..30 {
@@ -88,15 +79,13 @@ fn a_snapshot_goes_on_bit_by_bit() {
                 [&mut here, &mut there].map(|batch| batch.step(&action(0, step), &[9]).unwrap());
             assert_eq!(bits(&results), bits(&other));
         }
+        let before = there.snapshot(0);
         assert_eq!(there.restore(0, &snapshot[1..]), Err(SnapshotError::Damaged));
+        let mut other = Batch::new([Drive::new(&elsewhere)]);
+        other.reset(&[5]).unwrap();
+        assert_eq!(there.restore(0, &other.snapshot(0)), Err(SnapshotError::OtherSpec));
+        assert_eq!((there.snapshot(0), there.seed(0)), (before, here.seed(0)));
     }
-    for shows_memory in [false, true] {
-        let place = drive_place(DriveSettings { shows_memory, ..DriveSettings::default() });
-        check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
-    }
-    let place = explore_place(ExploreSettings { beams: Some(60), ..ExploreSettings::default() });
-    let one = || Batch::new(vec![Explore::new(&place).unwrap()]);
-    check(one(), one());
 }
 
 #[test]
@@ -105,7 +94,7 @@ fn a_memory_shows_where_the_robot_was_and_forgets_it_with_the_episode() {
     let mut task = Drive::new(&drive_place(settings));
     let mut results =
         Results { rewards: vec![0.0], terminated: vec![false], truncated: vec![false], ..Results::default() };
-    let len = task.parts()[0].values();
+    let len = task.observation_len();
     assert_eq!(len, 64 + 7 + 2 * 64);
     let layers = |task: &mut Drive| {
         let mut observation = vec![0.0; len];
@@ -164,34 +153,6 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
 }
 
 #[test]
-fn exploring_earns_found_changes_and_the_area_that_becomes_known() {
-    let settings = ExploreSettings { max_steps: 600, collision_reward: 0.0, ..ExploreSettings::default() };
-    let place = explore_place(settings.clone());
-    let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
-    batch.is_autoreset = false;
-    batch.reset(&[4]).unwrap();
-    let mut first = [0.0; 7];
-    batch.task(0).info(&mut first);
-    let (mut sum, mut results) = (0.0, Results::default());
-    for step in 0..600 {
-        let turn = if step % 100 < 60 { 0.0 } else { 0.6 };
-        results = batch.step(&[0.5, turn], &[0]).unwrap();
-        assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)), "step {step}");
-        sum += f64::from(results.rewards[0]);
-    }
-    assert_eq!((results.terminated[0], results.truncated[0]), (false, true));
-    let [house, updates, _, _, found, seen_m2, time_s] = results.info[..] else {
-        panic!("{:?}", results.info)
-    };
-    assert!(updates > 0.0 && (time_s - 60.0).abs() < 1e-4);
-    let spec = WorldSpec::generate_house([3, 5][house as usize]);
-    let cells_wide = 2.0 * spec.driven().radius_m / spec.frame.resolution_m();
-    let area = settings.seen_reward * f64::from(seen_m2 - first[5]);
-    let expected = settings.update_reward * f64::from(found) / cells_wide + area;
-    assert!((sum - expected).abs() < 1e-3 * expected.abs().max(1.0), "{sum} and not {expected}");
-}
-
-#[test]
 fn invalid_input_is_refused_and_changes_nothing() {
     let place = drive_place(DriveSettings::default());
     let mut batch = Batch::new((0..2).map(|_| Drive::new(&place)));
@@ -218,13 +179,11 @@ fn invalid_input_is_refused_and_changes_nothing() {
     nobody.robots.remove(0);
     let error = DrivePlace::new(&nobody, DriveSettings::default()).err().unwrap().to_string();
     assert!(error.starts_with("no robot of the world `driving hall` is driven: give one of them"), "{error}");
-    let error = ExplorePlace::new(&[], ExploreSettings::default()).err().unwrap().to_string();
-    assert_eq!(error, "exploring needs at least one world");
 }
 
 /// FNV-1a over all bits of observations and rewards, of actions that are exact in binary. `python/tests/test_envs.py`
 /// has the same steps and the same numbers: Python and Rust give the same bits.
-fn golden<T: Task + 'static>(tasks: Vec<T>) -> u64 {
+fn golden(tasks: Vec<Drive>) -> u64 {
     let count = tasks.len();
     let mut batch = Batch::new(tasks);
     let seeds = |first: usize| (first..first + count).map(|seed| seed as u64).collect::<Vec<u64>>();
@@ -242,52 +201,7 @@ fn golden<T: Task + 'static>(tasks: Vec<T>) -> u64 {
 }
 
 #[test]
-fn golden_hashes() {
+fn golden_hash() {
     let place = drive_place(DriveSettings { max_steps: 40, ..DriveSettings::default() });
-    let driving = golden((0..3).map(|_| Drive::new(&place)).collect());
-    let place =
-        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::default() });
-    let exploring = golden((0..2).map(|_| Explore::new(&place).unwrap()).collect());
-    assert_eq!([driving, exploring], [3_425_119_552_214_407_938, 5_066_755_386_246_569_362]);
-}
-
-#[test]
-fn an_exploring_task_that_is_over_stands_still() {
-    let place =
-        explore_place(ExploreSettings { max_steps: 30, beams: Some(60), ..ExploreSettings::default() });
-    let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
-    batch.is_autoreset = false;
-    batch.reset(&[4]).unwrap();
-    let mut step = || batch.step(&[1.0, 0.3], &[0]).unwrap();
-    let last = (0..31).map(|_| step()).find(|results| results.truncated[0]).unwrap();
-    let after = step();
-    assert_eq!((after.rewards[0], after.terminated[0], after.truncated[0]), (0.0, false, true));
-    assert_eq!((after.observations, after.info), (last.observations, last.info));
-}
-
-/// In a minute, a robot that stands still earns the area of its first view alone.
-#[test]
-fn standing_still_earns_next_to_nothing() {
-    let settings = ExploreSettings { max_steps: 600, beams: Some(90), ..ExploreSettings::default() };
-    let place = Arc::new(ExplorePlace::of_houses((0..8).collect(), settings).unwrap());
-    let total = |action: fn(&[f32]) -> [f32; 2]| {
-        let mut batch = Batch::new((0..6).map(|_| Explore::new(&place).unwrap()));
-        batch.is_autoreset = false;
-        let mut observations = batch.reset(&[0, 1, 2, 3, 4, 5]).unwrap();
-        let (len, mut sum) = (batch.observation_len(), 0.0);
-        for _ in 0..600 {
-            let actions: Vec<f32> = observations.chunks(len).flat_map(action).collect();
-            let results = batch.step(&actions, &[0; 6]).unwrap();
-            sum += f64::from(results.rewards.iter().sum::<f32>());
-            observations = results.observations;
-        }
-        sum
-    };
-    let standing = total(|_| [0.0, 0.0]);
-    // Straight on, and a turn before obstacles.
-    let wandering = total(|observation| {
-        let near = observation[35..55].iter().copied().fold(1.0_f32, f32::min);
-        if near < 0.08 { [0.0, 1.0] } else { [0.8, 0.0] }
-    });
-    assert!(wandering > 6.0 * 2.0 && standing < 0.5 * wandering, "{standing} and {wandering}");
+    assert_eq!(golden((0..3).map(|_| Drive::new(&place)).collect()), 3_425_119_552_214_407_938);
 }

@@ -46,7 +46,7 @@ pub enum Purpose {
     WorldGenerator,
     /// Generator of random houses. Stream `3 << 48`.
     HouseGenerator,
-    /// Learning tasks: worlds, start poses and goals. Stream `4 << 48`.
+    /// Learning tasks: start poses and goals. Stream `4 << 48`.
     Task,
     /// The heading at the start of a robot whose map has a frame of its own. Stream `5 << 48`.
     MapFrame,

@@ -1,4 +1,4 @@
-"""Worlds with lasers, a mapper that learns where a place changes, and learning tasks.
+"""Worlds with lasers, a mapper that learns where a place changes, and a learning task.
 
 >>> import curious
 >>> fleet = curious.Fleet("four_rooms", seed=7)
@@ -9,7 +9,7 @@
 Units are SI: meters, seconds, radians. Poses are ``[x, y, heading]``. Arrays of cells have the shape (rows, columns),
 and row 0 has the lowest y. The same world, seed and commands give the same bits as in Rust.
 
-Where Gymnasium is installed, the environments of :mod:`curious.envs` are registered, as ``curious/Drive-v0``.
+Where Gymnasium is installed, the environment of :mod:`curious.envs` is registered as ``curious/Drive-v0``.
 """
 
 from ._native import (
@@ -62,13 +62,11 @@ def _register() -> None:
         import gymnasium
     except ImportError:
         return
-    names = {"Drive-v0": "Drive", "Explore-v1": "Explore"}
-    for name, of_class in names.items():
-        gymnasium.register(
-            id=f"curious/{name}",
-            entry_point=f"curious.envs:{of_class}Env",
-            vector_entry_point=f"curious.envs:{of_class}VectorEnv",
-        )
+    gymnasium.register(
+        id="curious/Drive-v0",
+        entry_point="curious.envs:DriveEnv",
+        vector_entry_point="curious.envs:DriveVectorEnv",
+    )
 
 
 _register()

@@ -336,6 +336,7 @@ def trial(
     seconds: int = 600,
     estimator: str | None = None,
     robot: int | None = None,
+    unseen_first: bool = False,
 ) -> dict[str, Any]: ...
 
 @final
@@ -343,24 +344,14 @@ class Batch:
     autoreset: bool
     @staticmethod
     def drive(world: WorldLike, environments: int, threads: int = 0, **settings: Any) -> Batch: ...
-    @staticmethod
-    def explore(
-        worlds: list[WorldLike],
-        environments: int,
-        threads: int = 0,
-        *,
-        houses: list[int] | None = None,
-        **settings: Any,
-    ) -> Batch: ...
     @property
     def environments(self) -> int: ...
     @property
     def agents(self) -> int: ...
     @property
     def observation_len(self) -> int: ...
-    # Names, shapes, and names and lengths along the last axis of each part; along the first axis of `map`, which has layers.
     @property
-    def parts(self) -> list[tuple[str, list[int], list[tuple[str, int]]]]: ...
+    def slices(self) -> list[tuple[str, int]]: ...
     def info(self) -> Floats32: ...
     @property
     def info_names(self) -> list[str]: ...

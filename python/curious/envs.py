@@ -10,21 +10,9 @@
     more numbers follow, from 0 to 1: ``visited`` (64), how long the robot was in places around it in this episode, and ``seen``
     (64), which share of them it saw: at 0.5, 1, 1.75 and 3 m, in 16 directions each, counter-clockwise from behind.
 
-``ExploreEnv`` and ``ExploreVectorEnv``
-    A robot maps houses in which doors open and people walk. Observation, a dict: ``scan``, shape (180,); ``state``,
-    shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
-    (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
-    seen, share that is blocked, how long ago it was seen, probability of a change since then. The map is refreshed at
-    every tenth step.
-    Action as above. Reward: the changes that are found in cells that were out of view for 8 s or more,
-    per cell of the robot's width, 0.2 per square meter that becomes known, -0.5 per collision: who stands still earns
-    next to nothing. The episode is truncated after 3000 steps of 0.1 s. It begins anywhere in one of ``houses``.
+``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]``.
 
-``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]`` in Drive,
-``observation["state"][env.slices["state"]["heading"]]`` in Explore. Of ``map`` it names the layers:
-``observation["map"][env.slices["map"]["seen"]]`` has the shape (1, rows, columns).
-
-``info["collisions"]`` of every task counts the contacts of the episode that began while the robot moved.
+``info["collisions"]`` counts the contacts of the episode that began while the robot moved.
 
 Everything random comes from ``np_random``: ``reset`` draws the seed of the world from it, and ``info["world_seed"]`` has
 it, so that Rust can repeat the episode. The vector environments reset an environment in the same step in which its
@@ -37,8 +25,7 @@ from __future__ import annotations
 
 import copy
 import operator
-from os import PathLike
-from typing import Any, Iterable, Sequence
+from typing import Any, Sequence
 
 import gymnasium
 import numpy as np
@@ -54,11 +41,9 @@ __all__ = [
     "TRAIN_HOUSES",
     "DriveEnv",
     "DriveVectorEnv",
-    "ExploreEnv",
-    "ExploreVectorEnv",
 ]
 
-#: The generated houses in which a robot explores by default, and houses for tests: no seed is in both.
+#: Seeds of generated houses (``Spec.house``) to learn in, and to test in: no seed is in both.
 TRAIN_HOUSES = range(100_000, 110_000)
 TEST_HOUSES = range(1_000)
 
@@ -76,85 +61,39 @@ def _world_seed(value: Any) -> int:
     return seed
 
 
-def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
-    def box(name: str, shape: list[int]) -> spaces.Box:
-        low = 0.0 if name in ("scan", "map") else -1.0
-        return spaces.Box(low, 1.0, tuple(shape), np.float32)
-
-    if len(parts) == 1:
-        return box(*parts[0])
-    return spaces.Dict({name: box(name, shape) for name, shape in parts})
+def _observation_space(batch: Batch) -> spaces.Box:
+    return spaces.Box(-1.0, 1.0, (batch.observation_len,), np.float32)
 
 
-def _split(parts: list[tuple[str, list[int]]], rows: np.ndarray) -> Any:
-    """The parts of some observations, as views of the same memory."""
-    if len(parts) == 1:
-        return rows
-    result, begin = {}, 0
-    for name, shape in parts:
-        end = begin + int(np.prod(shape))
-        result[name] = rows[..., begin:end].reshape(rows.shape[:-1] + tuple(shape))
-        begin = end
-    return result
-
-
-def _drive(num_envs: int, threads: int, world: Any = None, **settings: Any) -> Batch:
-    return Batch.drive(Spec.driving_hall() if world is None else world, num_envs, threads, **settings)
-
-
-def _worlds(worlds: Any, houses: Any) -> tuple[list[Any], list[int] | None]:
-    """The worlds of an exploring task: worlds, or the seeds of generated houses."""
-    if worlds is None:
-        seeds = [operator.index(seed) for seed in (TRAIN_HOUSES if houses is None else houses)]
-        return [], [_world_seed(seed) for seed in seeds]
-    if houses is not None:
-        raise TypeError("an exploring task is in `worlds` or in `houses`, not in both")
-    if isinstance(worlds, (str, PathLike, Spec)):
-        worlds = [worlds]
-    if not isinstance(worlds, Iterable):
-        raise TypeError(f"`worlds` is a list of worlds or one world, and not {type(worlds).__name__}")
-    return list(worlds), None
-
-
-def _explore(num_envs: int, threads: int, worlds: Any = None, houses: Any = None, **settings: Any) -> Batch:
-    specs, seeds = _worlds(worlds, houses)
-    return Batch.explore(specs, num_envs, threads, houses=seeds, **settings)
-
-
-def _slices(batch: Batch) -> dict[str, Any]:
-    """The named slices of the last axis, or of the layers, per part of the observation; of the only part alone."""
-    found: dict[str, dict[str, slice]] = {}
-    for part, _, lengths in batch.parts:
-        begin, found[part] = 0, {}
-        for name, length in lengths:
-            found[part][name] = slice(begin, begin + length)
-            begin += length
-    return dict(next(iter(found.values()))) if len(found) == 1 else dict(found)
-
-
-#: What is counted, or is the number of a house.
-_COUNTS = {"world", "map_updates", "found_changes", "collisions"}
+def _slices(batch: Batch) -> dict[str, slice]:
+    """The named slices of an observation."""
+    found, begin = {}, 0
+    for name, length in batch.slices:
+        found[name] = slice(begin, begin + length)
+        begin += length
+    return found
 
 
 def _infos(names: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
-    """The columns of the native information by name: counts as whole numbers."""
+    """The columns of the native information by name: the count of collisions as whole numbers."""
     columns: dict[str, np.ndarray] = {name: values[:, column] for column, name in enumerate(names)}
-    return {name: column.astype(np.int64) if name in _COUNTS else column for name, column in columns.items()}
+    return {**columns, "collisions": columns["collisions"].astype(np.int64)}
 
 
 class _Native:
     """What one environment and many have in common: the native part, which one call steps."""
 
     metadata: dict[str, Any]
-    _make: Any
 
-    def _open(self, num_envs: int, threads: int, render_mode: str | None, render_size: int, settings: dict[str, Any]) -> None:
+    def _open(
+        self, num_envs: int, threads: int, render_mode: str | None, render_size: int, world: Any = None, **settings: Any
+    ) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
         self.render_mode = render_mode
         self.render_size = render_size
-        self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
-        self._parts = [(name, shape) for name, shape, _ in self._batch.parts]
+        spec = Spec.driving_hall() if world is None else world
+        self._batch: Batch | None = Batch.drive(spec, num_envs, threads, **settings)
         self._names = self._batch.info_names
         self.slices = _slices(self._batch)
         self._was_reset = False
@@ -174,18 +113,22 @@ class _Native:
         )
 
 
-class _Single(_Native, gymnasium.Env):
-    """One environment."""
+class DriveEnv(_Native, gymnasium.Env):
+    """Driving to goals among moving things; see the module.
+
+    ``world``: a ``Spec``, a name or a path, with one driven robot. Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``,
+    ``shows_memory``, ``goal_reward``, ``progress_reward``, ``collision_reward``, ``step_reward``.
+    """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 10}
 
     def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
         for name in {"num_envs", "threads"} & settings.keys():
             raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
-        self._open(1, 1, render_mode, render_size, settings)
+        self._open(1, 1, render_mode, render_size, **settings)
         self.batch.autoreset = False
         self._settings = settings
-        self.observation_space = _observation_space(self._parts)
+        self.observation_space = _observation_space(self.batch)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self._world_seed = 0
         self._screen: Any = None
@@ -202,7 +145,7 @@ class _Single(_Native, gymnasium.Env):
         self._was_reset = True
         if self.render_mode == "human":
             self.render()
-        return _split(self._parts, rows[0]), self._info(batch.info())
+        return rows[0], self._info(batch.info())
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Simulate one step. ``ValueError``: the action has the wrong shape, is NaN or out of range."""
@@ -211,13 +154,7 @@ class _Single(_Native, gymnasium.Env):
         info = self._info(values)
         if self.render_mode == "human":
             self.render()
-        return (
-            _split(self._parts, rows[0]),
-            float(rewards[0]),
-            bool(terminated[0]),
-            bool(truncated[0]),
-            info,
-        )
+        return rows[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def _info(self, values: np.ndarray) -> dict[str, Any]:
         info: dict[str, Any] = {name: column[0].item() for name, column in _infos(self._names, values).items()}
@@ -258,7 +195,7 @@ class _Single(_Native, gymnasium.Env):
         restored = self.batch.restore(0, snapshot, allow_other_build=allow_other_build)
         self._world_seed = self.batch.seed(0)
         self._was_reset = True
-        return _split(self._parts, restored[0])
+        return restored[0]
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
         """Another environment in the same state, which goes on with the same bits; without the window."""
@@ -293,8 +230,8 @@ def _actions(actions: Any, rows: int) -> np.ndarray:
     return array.reshape(rows, 2)
 
 
-class _Vector(_Native, gymnasium.vector.VectorEnv):
-    """Many environments: one call steps all of them, on several threads."""
+class DriveVectorEnv(_Native, gymnasium.vector.VectorEnv):
+    """Many of ``DriveEnv``: one call steps all of them. ``threads``: 0 for all, 1 for none beside the caller."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.SAME_STEP}
 
@@ -306,10 +243,10 @@ class _Vector(_Native, gymnasium.vector.VectorEnv):
         render_size: int = 240,
         **settings: Any,
     ) -> None:
-        self._open(num_envs, threads, render_mode, render_size, settings)
+        self._open(num_envs, threads, render_mode, render_size, **settings)
         self.num_envs = num_envs
         self._settings = {"threads": threads, **settings}
-        self.single_observation_space = _observation_space(self._parts)
+        self.single_observation_space = _observation_space(self.batch)
         self.single_action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
@@ -348,7 +285,7 @@ class _Vector(_Native, gymnasium.vector.VectorEnv):
         rows = batch.reset(self._world_seeds)
         self._was_reset = True
         info: dict[str, Any] = {**_infos(self._names, batch.info()), "world_seed": self._world_seeds.copy(), **self._masks}
-        return _split(self._parts, rows), info
+        return rows, info
 
     def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Simulate one step of every environment. ``ValueError``: an action is NaN or out of range."""
@@ -360,7 +297,7 @@ class _Vector(_Native, gymnasium.vector.VectorEnv):
             ended = np.flatnonzero(was_reset)
             final_obs = np.empty(self.num_envs, object)
             for index in ended:
-                final_obs[index] = _split(self._parts, last[index])
+                final_obs[index] = last[index]
             final_info: dict[str, Any] = {name: info[name].copy() for name in self._names}
             final_info["world_seed"] = self._world_seeds.copy()
             final_info.update({f"_{name}": was_reset.copy() for name in [*self._names, "world_seed"]})
@@ -371,7 +308,7 @@ class _Vector(_Native, gymnasium.vector.VectorEnv):
                 self._next_seeds[index] = _draw(self._randoms[index])
         info["world_seed"] = self._world_seeds.copy()
         info.update(self._masks)
-        return _split(self._parts, rows), rewards.astype(np.float64), terminated, truncated, info
+        return rows, rewards.astype(np.float64), terminated, truncated, info
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """The environments from above, one array each."""
@@ -388,7 +325,7 @@ class _Vector(_Native, gymnasium.vector.VectorEnv):
         """Return one environment to a snapshot; returns its observation."""
         restored = self.batch.restore(index, snapshot, allow_other_build=allow_other_build)
         self._world_seeds[index] = self.batch.seed(index)
-        return _split(self._parts, restored[0])
+        return restored[0]
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
         """Other environments in the same states, which go on with the same bits."""
@@ -408,36 +345,3 @@ class _Vector(_Native, gymnasium.vector.VectorEnv):
     def close_extras(self, **kwargs: Any) -> None:
         """Free everything."""
         self._batch = None
-
-
-class DriveEnv(_Single):
-    """Driving to goals among moving things; see the module.
-
-    ``world``: a ``Spec``, a name or a path, with one driven robot. Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``,
-    ``shows_memory``, ``goal_reward``, ``progress_reward``, ``collision_reward``, ``step_reward``.
-    """
-
-    _make = staticmethod(_drive)
-
-
-class DriveVectorEnv(_Vector):
-    """Many of ``DriveEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
-
-    _make = staticmethod(_drive)
-
-
-class ExploreEnv(_Single):
-    """Exploring houses that change; see the module.
-
-    ``houses``: the seeds of generated houses, as ``TRAIN_HOUSES`` (the default) and ``TEST_HOUSES``; or ``worlds``: a list of
-    ``Spec``, names or paths. Each episode is in one of them, ``info["world"]`` is its index. Settings: ``max_steps``,
-    ``beams``, ``update_reward``, ``seen_reward``, ``collision_reward``.
-    """
-
-    _make = staticmethod(_explore)
-
-
-class ExploreVectorEnv(_Vector):
-    """Many of ``ExploreEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
-
-    _make = staticmethod(_explore)

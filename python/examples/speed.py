@@ -87,21 +87,18 @@ def main() -> None:
     measure("resets of the house", 1, lambda: fleet.reset(1), args.seconds)
 
     try:
-        from curious.envs import DriveVectorEnv, ExploreVectorEnv
+        from curious.envs import DriveVectorEnv
     except ImportError:
         print("the environments need `pip install gymnasium`")
         return
-    tasks = ((DriveVectorEnv, "driving", "drive", 4000), (ExploreVectorEnv, "exploring", "explore", 400))
-    for make, name, kind, steps in tasks:
-        env = make(64, threads=args.threads)
-        env.reset(seed=1)
-        actions = np.random.default_rng(0).uniform(-1.0, 1.0, (100, 64, 2)).astype(np.float32)
-        actions[:, :, 0] = np.abs(actions[:, :, 0])
-        count = iter(range(10**9))
-        act = lambda: env.step(actions[next(count) % 100])  # noqa: E731
-        speed = measure(f"steps of the {name} task, 64 worlds", 64, act, args.seconds)
-        if args.rust:
-            compare(speed, [args.rust, kind, "64", str(args.threads or 2), str(steps)])
+    env = DriveVectorEnv(64, threads=args.threads)
+    env.reset(seed=1)
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (100, 64, 2)).astype(np.float32)
+    actions[:, :, 0] = np.abs(actions[:, :, 0])
+    count = iter(range(10**9))
+    speed = measure("steps of the driving task, 64 worlds", 64, lambda: env.step(actions[next(count) % 100]), args.seconds)
+    if args.rust:
+        compare(speed, [args.rust, "drive", "64", str(args.threads or 2), "4000"])
     if args.ir_sim:
         ir_sim(args.seconds)
 

@@ -1,4 +1,4 @@
-//! `curious._native`: the worlds, the mapper and the learning tasks as classes of Python. It converts values
+//! `curious._native`: the worlds, the mapper and the learning task as classes of Python. It converts values
 //! and errors; it must not know a rule of the domain, which are in the other crates.
 //!
 //! Every file has one class. Arrays go in and out as NumPy arrays; long calls release the interpreter (`detach`).

@@ -1,13 +1,13 @@
 use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::task_settings;
 use crate::snapshots::Kind;
-use crate::spec::{driving, spec_of};
+use crate::spec::spec_of;
 use crate::threads::on_threads;
-use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Results, TaskError};
+use environments::{ACTIONS, Drive, DrivePlace, Results, TaskError};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::sync::Arc;
 
 /// A number of tasks that are stepped by one call: the native part of the environments.
@@ -23,15 +23,10 @@ pub(crate) struct Batch {
     is_ready: bool,
 }
 
-/// A part of an observation: its name, its shape, and the names and lengths of slices.
-type Part = (&'static str, Vec<usize>, Vec<(&'static str, usize)>);
+/// What a snapshot of an environment is of.
+const KIND: Kind = Kind("driving environment");
 
 impl Batch {
-    fn with(mut batch: environments::Batch, threads: usize) -> Self {
-        batch.is_parallel &= threads != 1;
-        Self { batch, threads, is_ready: false }
-    }
-
     fn rows(&self) -> usize {
         self.environments() * self.agents()
     }
@@ -46,20 +41,9 @@ impl Batch {
         )))
     }
 
-    fn kind(&self) -> Kind {
-        Kind(self.batch.task(0).kind())
-    }
-
     /// Observations of one environment as an array.
     fn rows_of_one<'py>(&self, py: Python<'py>, values: Vec<f32>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         values.into_pyarray(py).reshape([self.agents(), self.observation_len()])
-    }
-
-    fn check_count(environments: usize) -> PyResult<()> {
-        if (1..=1 << 20).contains(&environments) {
-            return Ok(());
-        }
-        Err(value_error(format!("the number of environments must be from 1 to 1048576, not {environments}")))
     }
 }
 
@@ -75,39 +59,18 @@ impl Batch {
         #[pyo3(from_py_with = whole)] threads: usize,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        Self::check_count(environments)?;
+        if !(1..=1 << 20).contains(&environments) {
+            let why = format!("the number of environments must be from 1 to 1048576, not {environments}");
+            return Err(value_error(why));
+        }
         let (spec, settings) = (spec_of(py, world)?, task_settings(settings)?);
-        let batch = py.detach(|| -> Result<_, TaskError> {
+        let batch = py.detach(|| {
             let place = Arc::new(DrivePlace::new(&spec, settings)?);
             Ok(environments::Batch::new((0..environments).map(|_| Drive::new(&place))))
         });
-        Ok(Self::with(batch.map_err(value_error)?, threads))
-    }
-
-    /// Exploring tasks in some worlds, or in houses that are generated from seeds; each episode is in one of them. `threads` as
-    /// above.
-    #[staticmethod]
-    #[pyo3(signature = (worlds, environments, threads = 0, *, houses = None, **settings))]
-    fn explore(
-        py: Python<'_>,
-        worlds: &Bound<'_, PyList>,
-        #[pyo3(from_py_with = whole)] environments: usize,
-        #[pyo3(from_py_with = whole)] threads: usize,
-        houses: Option<Vec<u64>>,
-        settings: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Self> {
-        Self::check_count(environments)?;
-        let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
-        let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, task_settings(settings)?);
-        let batch = py.detach(|| -> Result<_, TaskError> {
-            let place = Arc::new(match houses {
-                Some(seeds) => ExplorePlace::of_houses(seeds, settings)?,
-                None => ExplorePlace::new(&specs, settings)?,
-            });
-            let tasks = (0..environments).map(|_| Explore::new(&place)).collect::<Result<Vec<_>, _>>()?;
-            Ok(environments::Batch::new(tasks))
-        });
-        Ok(Self::with(batch.map_err(value_error)?, threads))
+        let mut batch = batch.map_err(|why: TaskError| value_error(why))?;
+        batch.is_parallel &= threads != 1;
+        Ok(Self { batch, threads, is_ready: false })
     }
 
     /// The number of environments.
@@ -128,23 +91,21 @@ impl Batch {
         self.batch.observation_len()
     }
 
-    /// The parts of an observation: the name, the shape, and names and lengths of slices along the last axis, or along the first axis
-    /// of a part with layers (three axes), in their order; empty where the axis has no names.
+    /// The names and lengths of the parts of an observation, in their order.
     #[getter]
-    fn parts(&self) -> Vec<Part> {
-        let parts = self.batch.task(0).parts().into_iter();
-        parts.map(|part| (part.name, part.shape, part.slices)).collect()
+    fn slices(&self) -> Vec<(&'static str, usize)> {
+        self.batch.task(0).slices()
     }
 
     /// The names of the columns of the information about a step.
     #[getter]
-    fn info_names(&self) -> &'static [&'static str] {
-        self.batch.task(0).info_names()
+    fn info_names(&self) -> [&'static str; 3] {
+        Drive::INFO_NAMES
     }
 
     /// The information about every environment as it is now, shape (environments * agents, info_names).
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let (rows, names) = (self.rows(), self.info_names().len());
+        let (rows, names) = (self.rows(), Drive::INFO_NAMES.len());
         let mut values = vec![0.0; rows * names];
         let of_one = values.len() / self.environments();
         for (environment, values) in values.chunks_mut(of_one).enumerate() {
@@ -191,7 +152,7 @@ impl Batch {
         if !self.is_ready {
             return Err(PyRuntimeError::new_err("call reset() before step()"));
         }
-        let (rows, values, infos) = (self.rows(), self.observation_len(), self.info_names().len());
+        let (rows, values, infos) = (self.rows(), self.observation_len(), Drive::INFO_NAMES.len());
         let shape = actions.as_array().dim();
         if shape != (rows, ACTIONS) {
             return Err(value_error(format!(
@@ -243,17 +204,16 @@ impl Batch {
     /// The state of an environment as bytes, with the seed of its episode.
     #[pyo3(signature = (environment = 0))]
     fn snapshot<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         #[pyo3(from_py_with = index)] environment: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
         self.check(environment)?;
-        Ok(self.kind().seal(py, &self.batch.snapshot(environment)))
+        Ok(KIND.seal(py, &self.batch.snapshot(environment)))
     }
 
     /// Returns an environment to a snapshot of one with the same settings, and returns its observations.
-    /// `SnapshotError`: the bytes are not one, or were written by another build of the package; the environment must be
-    /// reset then.
+    /// `SnapshotError`: the bytes are not one, or were written by another build of the package; nothing is changed then.
     #[pyo3(signature = (environment, snapshot, *, allow_other_build = false))]
     fn restore<'py>(
         &mut self,
@@ -263,7 +223,7 @@ impl Batch {
         allow_other_build: bool,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
-        let state = self.kind().open(snapshot, allow_other_build)?;
+        let state = KIND.open(snapshot, allow_other_build)?;
         let observations = self.batch.restore(environment, state).map_err(snapshot_error)?.to_vec();
         self.is_ready |= self.environments() == 1;
         self.rows_of_one(py, observations)

@@ -1,4 +1,4 @@
-"""The environments."""
+"""The environment, one and many."""
 
 import copy
 import pickle
@@ -12,52 +12,41 @@ gymnasium = pytest.importorskip("gymnasium")
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
-NAMES = ["curious/Drive-v0", "curious/Explore-v1"]
-SMALL = {
-    "curious/Drive-v0": {"max_steps": 25},
-    "curious/Explore-v1": {"worlds": [curious.Spec.house(1), curious.Spec.house(4)], "max_steps": 25, "beams": 60},
-}
-
-
-def flat(observation) -> np.ndarray:
-    parts = observation.values() if isinstance(observation, dict) else [observation]
-    return np.concatenate([np.asarray(part).ravel() for part in parts])
+NAME = "curious/Drive-v0"
+SMALL = {"max_steps": 25}
 
 
 def action(environment: int, step: int) -> np.ndarray:
     return np.array([np.cos(environment + 0.1 * step), np.sin(environment * 1.7 + 0.3 * step)], np.float32)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_check_env_has_no_warning(name):
+def test_check_env_has_no_warning():
     # Warnings are errors in this suite.
-    env = gymnasium.make(name, render_mode="rgb_array", **SMALL[name])
+    env = gymnasium.make(NAME, render_mode="rgb_array", **SMALL)
     check_env(env.unwrapped)
     env.close()
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_vector_environment_has_the_bits_of_single_ones(name):
+def test_a_vector_environment_has_the_bits_of_single_ones():
     count, steps = 5, 70
-    vector = gymnasium.make_vec(name, num_envs=count, vectorization_mode="vector_entry_point", **SMALL[name])
+    vector = gymnasium.make_vec(NAME, num_envs=count, vectorization_mode="vector_entry_point", **SMALL)
     assert vector.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP
-    alone = type(vector.unwrapped)(num_envs=count, threads=1, **SMALL[name])
-    single = gymnasium.make(name, **SMALL[name])
+    alone = type(vector.unwrapped)(num_envs=count, threads=1, **SMALL)
+    single = gymnasium.make(NAME, **SMALL)
     rows, info = vector.reset(seed=40)
     rows_alone, _ = alone.reset(seed=40)
-    np.testing.assert_array_equal(flat(rows), flat(rows_alone))
+    np.testing.assert_array_equal(rows, rows_alone)
     recorded, ends = [], 0
     seeds = [int(info["world_seed"][2])]
     for step in range(steps):
         actions = np.stack([action(index, step) for index in range(count)])
         rows, rewards, terminated, truncated, info = vector.step(actions)
         rows_alone, rewards_alone, *_ = alone.step(actions)
-        np.testing.assert_array_equal(flat(rows), flat(rows_alone))
+        np.testing.assert_array_equal(rows, rows_alone)
         np.testing.assert_array_equal(rewards, rewards_alone)
-        of_two = {key: part[2] for key, part in rows.items()} if isinstance(rows, dict) else rows[2]
         ended = bool(terminated[2] or truncated[2])
-        last = info["final_obs"][2] if ended else of_two
-        recorded.append((flat(last), rewards[2], terminated[2], truncated[2]))
+        last = info["final_obs"][2] if ended else rows[2]
+        recorded.append((last, rewards[2], terminated[2], truncated[2]))
         if ended:
             ends += 1
             assert info["_final_obs"][2] and info["_final_info"][2]
@@ -70,7 +59,7 @@ def test_a_vector_environment_has_the_bits_of_single_ones(name):
         assert info["world_seed"] == seeds[episode]
         observation, reward, terminated, truncated, info = single.step(action(2, step))
         expected = recorded[step]
-        np.testing.assert_array_equal(flat(observation), expected[0])
+        np.testing.assert_array_equal(observation, expected[0])
         assert (np.float32(reward), terminated, truncated) == (np.float32(expected[1]), expected[2], expected[3])
         if terminated or truncated:
             episode += 1
@@ -78,27 +67,26 @@ def test_a_vector_environment_has_the_bits_of_single_ones(name):
     # A world can be repeated by its seed alone.
     again, _ = single.reset(options={"world_seed": seeds[0]})
     first, _ = single.reset(seed=42)
-    np.testing.assert_array_equal(flat(again), flat(first))
+    np.testing.assert_array_equal(again, first)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_snapshots_and_pictures(name):
-    env = gymnasium.make(name, render_mode="rgb_array", **SMALL[name]).unwrapped
+def test_snapshots_and_pictures():
+    env = gymnasium.make(NAME, render_mode="rgb_array", **SMALL).unwrapped
     world_seed = env.reset(seed=1)[1]["world_seed"]
     for step in range(5):
         env.step(action(0, step))
     snapshot, picture = env.snapshot(), env.render()
     assert picture.dtype == np.uint8 and picture.shape[2] == 3 and max(picture.shape) == 480
-    expected = [flat(env.step(action(0, step))[0]) for step in range(5, 10)]
+    expected = [env.step(action(0, step))[0] for step in range(5, 10)]
     assert not np.array_equal(env.render(), picture)
     env.reset(seed=2)
     env.restore(snapshot)
     np.testing.assert_array_equal(env.render(), picture)
     for step in range(5, 10):
         observation, _, _, _, info = env.step(action(0, step))
-        np.testing.assert_array_equal(flat(observation), expected[step - 5])
+        np.testing.assert_array_equal(observation, expected[step - 5])
         assert info["world_seed"] == world_seed
-    many = gymnasium.make_vec(name, num_envs=2, **SMALL[name]).unwrapped
+    many = gymnasium.make_vec(NAME, num_envs=2, **SMALL).unwrapped
     many.reset(seed=5)
     many.restore(1, snapshot)
     info = many.step(np.stack([action(0, 5)] * 2))[4]
@@ -109,9 +97,8 @@ def test_snapshots_and_pictures(name):
         env.restore(snapshot[:-3])
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_invalid_actions_are_refused(name):
-    env = gymnasium.make(name, **SMALL[name]).unwrapped
+def test_invalid_actions_are_refused():
+    env = gymnasium.make(NAME, **SMALL).unwrapped
     with pytest.raises(RuntimeError, match="call reset"):
         env.step([0.0, 0.0])
     env.reset(seed=1)
@@ -132,7 +119,7 @@ def test_invalid_actions_are_refused(name):
     for call in (env.reset, lambda: env.step([0.0, 0.0]), env.snapshot):
         with pytest.raises(gymnasium.error.ClosedEnvironmentError):
             call()
-    vector = gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", **SMALL[name])
+    vector = gymnasium.make_vec(NAME, num_envs=2, vectorization_mode="vector_entry_point", **SMALL)
     vector.reset(seed=[3, 4])
     with pytest.raises(ValueError, match="environment 1"):
         vector.step(np.array([[0.0, 0.0], [0.0, 2.0]]))
@@ -148,15 +135,14 @@ def test_invalid_actions_are_refused(name):
     vector.close()
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_worlds_are_repeated_by_their_seeds(name):
-    vector = gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", **SMALL[name])
+def test_worlds_are_repeated_by_their_seeds():
+    vector = gymnasium.make_vec(NAME, num_envs=2, vectorization_mode="vector_entry_point", **SMALL)
 
     def run(**keywords) -> tuple[np.ndarray, np.ndarray]:
         observation, info = vector.reset(**keywords)
-        rows = [flat(observation)]
+        rows = [observation]
         for step in range(15):
-            rows.append(flat(vector.step(np.stack([action(0, step), action(1, step)]))[0]))
+            rows.append(vector.step(np.stack([action(0, step), action(1, step)]))[0])
         return info["world_seed"], np.concatenate(rows)
 
     seeds, first = run(seed=7)
@@ -165,93 +151,68 @@ def test_worlds_are_repeated_by_their_seeds(name):
     repeated, again = run(options={"world_seed": seeds})
     np.testing.assert_array_equal(seeds, repeated)
     np.testing.assert_array_equal(first, again)
-    env = gymnasium.make(name, **SMALL[name])
+    env = gymnasium.make(NAME, **SMALL)
     assert env.reset(options={"world_seed": seeds[1]})[1]["world_seed"] == seeds[1]
     for seed, error in ((-1, ValueError), (1 << 64, ValueError), (1.5, TypeError), ("x", TypeError)):
         with pytest.raises(error):
             env.reset(options={"world_seed": seed})
 
 
-def test_episodes_begin_anywhere_in_many_houses():
-    env = gymnasium.make("curious/Explore-v1", beams=20, max_steps=1)
-    starts = {tuple(env.reset(seed=seed)[0]["state"].tolist()) for seed in range(20)}
-    houses = {int(env.reset(seed=seed)[1]["world_seed"]) for seed in range(20)}
-    assert len(starts) == 20 and len(houses) == 20
-    assert not set(curious.envs.TRAIN_HOUSES) & set(curious.envs.TEST_HOUSES)
-    numbers = set()
-    for seed in range(12):
-        env = gymnasium.make("curious/Explore-v1", houses=range(2, 5), beams=20, max_steps=1)
-        env.reset(seed=seed)
-        numbers.add(env.step(np.zeros(2, np.float32))[4]["world"])
-    assert numbers == {0.0, 1.0, 2.0}
-    with pytest.raises(TypeError, match="in `worlds` or in `houses`, not in both"):
-        gymnasium.make("curious/Explore-v1", houses=range(2), worlds="house")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_deep_copy_goes_on_with_the_same_bits(name):
-    env = gymnasium.make(name, **SMALL[name])
+def test_a_deep_copy_goes_on_with_the_same_bits():
+    env = gymnasium.make(NAME, **SMALL)
     env.reset(seed=3)
     env.step(action(0, 0))
     other = copy.deepcopy(env)
     for step in range(1, 4):
         one, two = (each.step(action(0, step)) for each in (env, other))
-        np.testing.assert_array_equal(flat(one[0]), flat(two[0]))
+        np.testing.assert_array_equal(one[0], two[0])
         assert one[1] == two[1]
-    np.testing.assert_array_equal(flat(env.reset()[0]), flat(other.reset()[0]))
+    np.testing.assert_array_equal(env.reset()[0], other.reset()[0])
     for refused in (copy.copy, pickle.dumps):
         with pytest.raises(TypeError, match="cannot be pickled: make another one"):
             refused(env.unwrapped)
-    vector = gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", **SMALL[name]).unwrapped
+    vector = gymnasium.make_vec(NAME, num_envs=2, vectorization_mode="vector_entry_point", **SMALL).unwrapped
     vector.reset(seed=3)
     actions = np.stack([action(0, 0), action(1, 0)])
     vector.step(actions)
     again = copy.deepcopy(vector)
-    np.testing.assert_array_equal(flat(vector.step(actions)[0]), flat(again.step(actions)[0]))
+    np.testing.assert_array_equal(vector.step(actions)[0], again.step(actions)[0])
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_values_of_observations_have_names(name):
-    env = gymnasium.make(name, **SMALL[name]).unwrapped
+def test_the_values_of_observations_have_names():
+    env = gymnasium.make(NAME, **SMALL).unwrapped
     observation, _ = env.reset(seed=1)
-    if name == "curious/Drive-v0":
-        assert env.slices["scan"] == slice(0, 64) and env.slices["velocity"] == slice(69, 71)
-        parts = [(observation, env.slices, ("goal_direction", "path_direction"))]
-    else:
-        parts = [(observation["state"], env.slices["state"], ("heading",))]
-    for values, slices, directions in parts:
-        assert sum(values[of].size for of in slices.values()) == values.size
-        for direction in directions:
-            assert np.hypot(*values[slices[direction]]) == pytest.approx(1.0, abs=1e-5)
+    assert env.slices["scan"] == slice(0, 64) and env.slices["velocity"] == slice(69, 71)
+    assert sum(observation[of].size for of in env.slices.values()) == observation.size
+    for direction in ("goal_direction", "path_direction"):
+        assert np.hypot(*observation[env.slices[direction]]) == pytest.approx(1.0, abs=1e-5)
 
 
-def test_every_task_counts_contacts():
-    for name in NAMES:
-        env = gymnasium.make(name, **SMALL[name]).unwrapped
-        _, info = env.reset(seed=1)
-        assert info["collisions"] == 0 and isinstance(info["collisions"], int), name
-        info = env.step(action(0, 0))[4]
-        assert info["collisions"] >= 0 and isinstance(info["collisions"], int), name
-    for name in NAMES:
-        # A robot that always drives straight on meets a wall, and stays there: one contact, not one per step.
-        env = gymnasium.make(name, collision_reward=-100.0, max_steps=200).unwrapped
-        env.reset(seed=2)
-        counts, rewards = [0], []
-        for _ in range(200):
-            _, reward, terminated, truncated, info = env.step(np.array([1.0, 0.0], np.float32))
-            counts.append(info["collisions"])
-            rewards.append(reward)
-        new = np.diff(counts)
-        assert counts[-1] > 0 and (new >= 0).all() and counts[-1] < 100
-        np.testing.assert_array_equal(new, np.round(np.minimum(rewards, 0.0) / -100.0))
+def test_contacts_are_counted():
+    env = gymnasium.make(NAME, **SMALL).unwrapped
+    _, info = env.reset(seed=1)
+    assert info["collisions"] == 0 and isinstance(info["collisions"], int)
+    info = env.step(action(0, 0))[4]
+    assert info["collisions"] >= 0 and isinstance(info["collisions"], int)
+    # A robot that always drives straight on meets a wall, and stays there: one contact, not one per step.
+    env = gymnasium.make(NAME, collision_reward=-100.0, max_steps=200).unwrapped
+    env.reset(seed=2)
+    counts, rewards = [0], []
+    for _ in range(200):
+        _, reward, terminated, truncated, info = env.step(np.array([1.0, 0.0], np.float32))
+        counts.append(info["collisions"])
+        rewards.append(reward)
+    new = np.diff(counts)
+    assert counts[-1] > 0 and (new >= 0).all() and counts[-1] < 100
+    np.testing.assert_array_equal(new, np.round(np.minimum(rewards, 0.0) / -100.0))
 
 
 def test_render_without_a_mode_says_so():
-    env = gymnasium.make("curious/Drive-v0").unwrapped
+    env = gymnasium.make(NAME).unwrapped
     env.reset(seed=1)
     with pytest.warns(UserWarning, match="render.. needs render_mode"):
         assert env.render() is None
-    vector = gymnasium.make_vec("curious/Drive-v0", num_envs=2, vectorization_mode="vector_entry_point").unwrapped
+    vector = gymnasium.make_vec(NAME, num_envs=2, vectorization_mode="vector_entry_point").unwrapped
     with pytest.warns(UserWarning, match="render.. needs render_mode"):
         assert vector.render() is None
 
@@ -259,7 +220,7 @@ def test_render_without_a_mode_says_so():
 def test_a_window_opens_no_audio_device(monkeypatch):
     pygame = pytest.importorskip("pygame")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    env = gymnasium.make("curious/Drive-v0", render_mode="human").unwrapped
+    env = gymnasium.make(NAME, render_mode="human").unwrapped
     env.reset(seed=1)
     assert pygame.display.get_init() and pygame.mixer.get_init() is None
     env.close()
@@ -268,32 +229,30 @@ def test_a_window_opens_no_audio_device(monkeypatch):
 
 def test_settings():
     with pytest.raises(TypeError, match="`threads` is for many environments"):
-        gymnasium.make("curious/Drive-v0", threads=2)
-    with pytest.raises(TypeError, match="`worlds` is a list of worlds or one world, and not int"):
-        gymnasium.make("curious/Explore-v1", worlds=5)
+        gymnasium.make(NAME, threads=2)
+    with pytest.raises(TypeError, match="a world is a spec, the name of a shipped world, or a path, and not"):
+        gymnasium.make(NAME, world=5)
     with pytest.raises(ValueError, match="render_mode must be one of"):
         curious.envs.DriveVectorEnv(2, render_mode="human")
     with pytest.raises(ValueError, match="unknown field `speed`, expected one of `decision_s`"):
-        gymnasium.make("curious/Drive-v0", speed=3)
+        gymnasium.make(NAME, speed=3)
     with pytest.raises(ValueError, match="goal_radius_m"):
-        gymnasium.make("curious/Drive-v0", goal_radius=-1.0)
+        gymnasium.make(NAME, goal_radius=-1.0)
     with pytest.raises(ValueError, match="the setting `max_steps` cannot be -5"):
-        gymnasium.make("curious/Drive-v0", max_steps=-5)
+        gymnasium.make(NAME, max_steps=-5)
     with pytest.raises(ValueError, match="the setting `goal_radius` cannot be .wide"):
-        gymnasium.make("curious/Drive-v0", goal_radius="wide")
+        gymnasium.make(NAME, goal_radius="wide")
     with pytest.raises(FileNotFoundError, match="there is no world `hut`"):
-        gymnasium.make("curious/Explore-v1", worlds="hut")
+        gymnasium.make(NAME, world="hut")
     with pytest.raises(ValueError, match="number of environments"):
         curious.Batch.drive(curious.Spec.driving_hall(), 0)
-    with pytest.raises(ValueError, match="at least one world"):
-        gymnasium.make("curious/Explore-v1", worlds=[])
-    env = gymnasium.make("curious/Drive-v0", world="house", decision_s=0.2, min_goal=4.0)
+    env = gymnasium.make(NAME, world="house", decision_s=0.2, min_goal=4.0)
     observation, info = env.reset(seed=1)
     assert observation.shape == (727,) and info["distance_m"] >= 4.0
 
 
 def test_the_path_leads_to_the_goal():
-    env = gymnasium.make_vec("curious/Drive-v0", num_envs=64, vectorization_mode="vector_entry_point")
+    env = gymnasium.make_vec(NAME, num_envs=64, vectorization_mode="vector_entry_point")
     rows, _ = env.reset(seed=0)
     success, is_over = np.zeros(64, bool), np.zeros(64, bool)
     while not is_over.all():
@@ -338,30 +297,26 @@ def test_pettingzoo(fleet_toml):
             env.step({"a": [0.0, 0.0], "b": [value, 0.0]})
 
 
-@pytest.mark.parametrize("name", ["Drive", "Explore"])
-def test_stable_baselines3(name, tmp_path):
+def test_stable_baselines3(tmp_path):
     pytest.importorskip("stable_baselines3")
-    from curious import envs
+    from curious.envs import DriveVectorEnv
     from curious.sb3 import SB3VecEnv
     from stable_baselines3 import PPO
     from stable_baselines3.common.evaluation import evaluate_policy
 
-    settings = {"max_steps": 20} if name == "Drive" else {**SMALL["curious/Explore-v1"], "max_steps": 20}
-    make, policy = getattr(envs, f"{name}VectorEnv"), "MlpPolicy" if name == "Drive" else "MultiInputPolicy"
-    env = SB3VecEnv(make(num_envs=4, **settings))
+    env = SB3VecEnv(DriveVectorEnv(num_envs=4, max_steps=20))
     env.seed(3)
     first = env.reset()
     for _ in range(20):
         observations, rewards, dones, infos = env.step(np.zeros((4, 2), np.float32))
     assert rewards.shape == (4,) and dones.all() and all(info["TimeLimit.truncated"] for info in infos)
     assert infos[0]["episode"]["l"] == 20
-    if name == "Drive":
-        # The last observation of an episode, and the first one of the next.
-        assert not np.array_equal(infos[0]["terminal_observation"], observations[0])
+    # The last observation of an episode, and the first one of the next.
+    assert not np.array_equal(infos[0]["terminal_observation"], observations[0])
     # The same seed is the same start.
     env.seed(3)
-    np.testing.assert_array_equal(flat(env.reset()), flat(first))
-    model = PPO(policy, env, n_steps=16, batch_size=64, n_epochs=1, device="cpu", seed=0)
+    np.testing.assert_array_equal(env.reset(), first)
+    model = PPO("MlpPolicy", env, n_steps=16, batch_size=64, n_epochs=1, device="cpu", seed=0)
     model.learn(128)
     model.save(tmp_path / "model")
     again = PPO.load(tmp_path / "model", env=env, device="cpu")
@@ -371,18 +326,13 @@ def test_stable_baselines3(name, tmp_path):
     assert lengths == [20] * 4 and np.isfinite(returns).all()
 
 
-#: The numbers of `golden_hashes` in `environments/tests/tasks.rs`.
-GOLDEN = {"drive": 3425119552214407938, "explore": 5066755386246569362}
+#: The number of `golden_hash` in `environments/tests/tasks.rs`.
+GOLDEN = 3425119552214407938
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-@pytest.mark.parametrize("kind", GOLDEN)
-def test_python_and_rust_give_the_same_bits(kind, threads):
-    if kind == "drive":
-        batch = curious.Batch.drive(curious.Spec.driving_hall(), 3, threads, max_steps=40)
-    else:
-        houses = [curious.Spec.house(3), curious.Spec.house(5)]
-        batch = curious.Batch.explore(houses, 2, threads, max_steps=40, beams=20)
+def test_python_and_rust_give_the_same_bits(threads):
+    batch = curious.Batch.drive(curious.Spec.driving_hall(), 3, threads, max_steps=40)
     count, value = batch.environments, 0xCBF29CE484222325
     batch.reset(np.arange(count, dtype=np.uint64))
     for step in range(60):
@@ -391,11 +341,11 @@ def test_python_and_rust_give_the_same_bits(kind, threads):
         observations, rewards, *_ = batch.step(actions.reshape(count, 2), seeds)
         for bits in np.concatenate([observations.ravel(), rewards]).view(np.uint32).tolist():
             value = ((value ^ bits) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
-    assert value == GOLDEN[kind]
+    assert value == GOLDEN
 
 
 def test_drive_has_a_memory_with_names():
-    env = gymnasium.make("curious/Drive-v0", shows_path=False, shows_memory=True).unwrapped
+    env = gymnasium.make(NAME, shows_path=False, shows_memory=True).unwrapped
     observation, _ = env.reset(seed=4)
     assert observation.shape == (64 + 7 + 128,) == env.observation_space.shape
     visited, seen = (observation[env.slices[name]] for name in ("visited", "seen"))

@@ -29,7 +29,7 @@ def a_localizer():
 
 
 def an_environment():
-    batch = curious.Batch.explore([curious.Spec.house(1003)], 1, 1)
+    batch = curious.Batch.drive(curious.Spec.house(1003), 1, 1, shows_memory=True)
     batch.reset(np.zeros(1, np.uint64))
     for _ in range(20):
         batch.step(np.full((1, 2), 0.5, np.float32), np.zeros(1, np.uint64))

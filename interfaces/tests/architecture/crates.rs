@@ -24,7 +24,7 @@ const ALLOWED: &[(&str, &str)] = &[
         "reports",
         "interfaces files calendar sim worldfile mapper agent robot results draw cli evaluation curious",
     ),
-    ("environments", "interfaces sim worldfile mapper agent controller robot evaluation draw"),
+    ("environments", "interfaces sim worldfile evaluation draw"),
     (
         "python",
         "interfaces files sim worldfile stage mapper localizer logs agent robot survey evaluation environments draw",

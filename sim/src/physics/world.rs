@@ -1,10 +1,9 @@
 use super::fleet::Fleet;
-use super::free_space::FreePoses;
 use super::ground_truth::PhysicsGroundTruth;
 use super::report::{Body, Contact, ObstacleEvent};
 use super::snapshot::{self, SnapshotError};
 use super::spec::WorldSpec;
-use interfaces::{LaserReading, RandomStream, Twist, Values, World, value};
+use interfaces::{LaserReading, Twist, Values, World, value};
 use nalgebra::Isometry2;
 use std::sync::Arc;
 
@@ -62,16 +61,6 @@ impl PhysicsWorld {
         self.truth = Arc::clone(&self.start);
         self.contacts.clear();
         self.obstacle_events.clear();
-    }
-
-    /// Moves the driven robot to a random pose in `free`, at rest; it stays where it is if others are in the way everywhere. For
-    /// the start of an episode, before the first reading.
-    pub fn start_in(&mut self, free: &FreePoses, random: &mut RandomStream) {
-        let robot = self.spec.driven_index();
-        if let Some(pose) = self.fleet.draw_pose(free, robot, random) {
-            // The pose was drawn among those that fit.
-            let _ = self.fleet.teleport(robot, &pose);
-        }
     }
 
     /// From now on, readings have the true pose in place of that by odometry: for comparisons. Nothing else changes.
