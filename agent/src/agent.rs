@@ -123,7 +123,7 @@ impl Agent {
             patch_cells: settings.patch_cells,
             reward: settings.reward,
             unseen: settings
-                .looks_at_unseen
+                .unseen_first
                 .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
             travel: Vec::new(),
             rng,
@@ -154,7 +154,7 @@ impl Agent {
 
 impl GoalSelector for Agent {
     /// Ends the trajectory to the last goal, and learns from the trajectory. With
-    /// [`looks_at_unseen`](AgentSettings::looks_at_unseen), and while unseen space can be looked at, the next goal is a
+    /// [`unseen_first`](AgentSettings::unseen_first), and while unseen space can be looked at, the next goal is a
     /// look, which belongs to no strategy. Otherwise the agent chooses a strategy and samples the next
     /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
     /// the robot.

@@ -31,9 +31,9 @@ pub struct AgentSettings {
     pub sensor_radius_m: f64,
     /// The events that count as map updates.
     pub reward: Reward,
-    /// Whether the robot looks into unseen space that it can reach before its strategies decide. The paper's robot
-    /// does not: in its worlds everything comes into view soon.
-    pub looks_at_unseen: bool,
+    /// *Unseen first*: whether the robot looks into unseen space that it can reach before it asks its strategies. The paper's robot
+    /// does not, nor does any robot where strategies are compared: with it, all of them cover the same place at first.
+    pub unseen_first: bool,
     /// The temperature τ of the paper's chooser, in map updates per reading: a strategy whose value is larger by τ is chosen e
     /// times as often.
     pub temperature: f64,
@@ -45,7 +45,7 @@ impl Default for AgentSettings {
             patch_cells: 5,
             sensor_radius_m: 10.0,
             reward: Reward::default(),
-            looks_at_unseen: false,
+            unseen_first: false,
             temperature: 2.0,
         }
     }

@@ -15,7 +15,7 @@ done
 case $study in
   grid-5000) run=(grid_world --generate 1000 --steps 5000) ;;
   grid-20000) run=(grid_world --generate 200 --steps 20000) ;;
-  houses) run=(house_trials --generate 200 --duration 20m) ;;
+  houses) run=(house_trials --generate 200 --duration 20m --unseen-first) ;;
   *) echo "grid-5000, grid-20000 or houses, not $study" >&2 && exit 2 ;;
 esac
 exec "$programs/${run[0]}" "${run[@]:1}" "${common[@]}" --shard "$shard" --out "study/$study" "$@"

@@ -1,18 +1,16 @@
-//! The settings of tasks and of maps, from the keywords of a call.
+//! The settings of the task and of maps, from the keywords of a call.
 
 use crate::convert::value_error;
+use environments::DriveSettings;
 use mapper::MapperSettings;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde::de::DeserializeOwned;
+use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// The settings of a task, from keywords that are called as their fields.
-pub(crate) fn task_settings<S>(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<S>
-where
-    S: DeserializeOwned + Default,
-{
-    let Some(keywords) = keywords else { return Ok(S::default()) };
+/// The settings of the driving task, from keywords that are called as their fields.
+pub(crate) fn task_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<DriveSettings> {
+    let Some(keywords) = keywords else { return Ok(DriveSettings::default()) };
     let py = keywords.py();
     let options = PyDict::new(py);
     // Scalars of NumPy are no numbers for `json`.
@@ -23,10 +21,10 @@ where
     // One by one, so that the error names the setting.
     for (key, value) in &settings {
         let alone = Map::from_iter([(key.clone(), value.clone())]);
-        S::deserialize(Value::Object(alone))
+        DriveSettings::deserialize(Value::Object(alone))
             .map_err(|why| value_error(format!("the setting `{key}` cannot be {value}: {why}")))?;
     }
-    S::deserialize(Value::Object(settings)).map_err(value_error)
+    DriveSettings::deserialize(Value::Object(settings)).map_err(value_error)
 }
 
 /// The settings with another estimator, occupancy model, gap and range noise.

@@ -120,13 +120,14 @@ fn strategy_of(strategy: &Bound<'_, PyAny>, error: &FirstError) -> PyResult<Tria
 ///
 /// `world`: a physics world (`Spec`, name or path). `seconds`: the length of the trial. `strategy`: the name of one of the library (`curious.strategies()`), or an object with a method `weigh(situation) -> array` of one weight per cell,
 /// shape (rows, columns): a goal is drawn with a probability in proportion to the weight of its patch. `estimator`: see
-/// `Mapper.estimators()`.
+/// `Mapper.estimators()`. `unseen_first`: the robot looks into unseen space before it asks the strategy; otherwise the strategy chooses
+/// every goal.
 ///
 /// Returns a dict: the last value of every metric, `samples` (a dict of lists over the time), `strategy_share`,
 /// `collisions`, `false_change_events`, `false_map_changes`, `map_hash`. Times are in s. The same arguments give the same result,
 /// also in `house_trials`. An exception of the strategy ends the trial.
 #[pyfunction]
-#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = 600, estimator = None, robot = None))]
+#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = 600, estimator = None, robot = None, unseen_first = false))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn trial<'py>(
     py: Python<'py>,
@@ -136,6 +137,7 @@ pub(crate) fn trial<'py>(
     #[pyo3(from_py_with = whole)] seconds: u64,
     estimator: Option<&str>,
     #[pyo3(from_py_with = optional_index)] robot: Option<usize>,
+    unseen_first: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let error = FirstError::default();
     let strategies = vec![match strategy {
@@ -154,7 +156,7 @@ pub(crate) fn trial<'py>(
         trials: 1,
         seed,
         length: seconds,
-        robot: PhysicsRobot::default(),
+        robot: PhysicsRobot { unseen_first, ..PhysicsRobot::default() },
     };
     let trial = run(py, &experiment, &error)?;
     let (dict, samples) = (PyDict::new(py), PyDict::new(py));

@@ -100,7 +100,7 @@ impl Settings {
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / source.cell_m).round().max(1.0) as _,
             sensor_radius_m: source.range_max_m,
-            looks_at_unseen: true,
+            unseen_first: true,
             ..AgentSettings::default()
         };
         // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells wide, and each of its

@@ -27,8 +27,8 @@ impl Travel for UpTo {
     }
 }
 
-fn agent(looks_at_unseen: bool) -> Agent {
-    let settings = AgentSettings { looks_at_unseen, sensor_radius_m: 10.0, ..Default::default() };
+fn agent(unseen_first: bool) -> Agent {
+    let settings = AgentSettings { unseen_first, sensor_radius_m: 10.0, ..Default::default() };
     let policy: Policy = "recency".parse().unwrap();
     Agent::new(&settings, &policy, rng(1)).unwrap()
 }

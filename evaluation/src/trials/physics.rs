@@ -13,11 +13,13 @@ pub struct PhysicsRobot {
     pub max_steps: u32,
     /// How the robot knows its pose; `None`: as the world suggests.
     pub pose: Option<PoseMode>,
+    /// Whether the robot looks into unseen space before it asks its strategy, as everywhere but in trials.
+    pub unseen_first: bool,
 }
 
 impl Default for PhysicsRobot {
     fn default() -> Self {
-        Self { max_steps: LOCAL_STEPS, pose: None }
+        Self { max_steps: LOCAL_STEPS, pose: None, unseen_first: false }
     }
 }
 
@@ -26,6 +28,7 @@ impl PhysicsRobot {
         let mut settings = physics_trial::settings(spec)?;
         settings.local_steps = self.max_steps;
         settings.pose = self.pose.unwrap_or(settings.pose);
+        settings.agent.unseen_first = self.unseen_first;
         Ok(settings)
     }
 }

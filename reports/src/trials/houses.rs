@@ -47,6 +47,10 @@ pub struct Houses {
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
     #[arg(long, value_parser = one_of(PoseMode::LIVE.to_vec(), pose_in_world), help_heading = "Comparison")]
     pose: Option<PoseMode>,
+
+    /// Look into unseen space before asking the strategy, as the robot of four_rooms does; else the strategy chooses every goal
+    #[arg(long, help_heading = "Comparison")]
+    unseen_first: bool,
 }
 
 impl TrialKind for Houses {
@@ -102,7 +106,7 @@ impl TrialKind for Houses {
     }
 
     fn robot(&self, max_steps: u32) -> PhysicsRobot {
-        PhysicsRobot { max_steps, pose: self.pose }
+        PhysicsRobot { max_steps, pose: self.pose, unseen_first: self.unseen_first }
     }
 
     fn to_toml(world: &WorldSpec) -> Option<String> {
