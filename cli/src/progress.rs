@@ -37,9 +37,9 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A run of `duration_s` of simulated time. `is_raw`: the keyboard pilot uses the terminal.
-    pub fn of_time(duration_s: f64, is_quiet: bool, is_raw: bool) -> Self {
-        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet, is_raw)
+    /// A run of `duration_s` of simulated time.
+    pub fn of_time(duration_s: f64, is_quiet: bool) -> Self {
+        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet)
     }
 
     /// The same, of a run that goes on from a simulated time.
@@ -51,7 +51,7 @@ impl Progress {
 
     /// A number of `what`: trials, or scans of a log.
     pub fn of_count(count: usize, what: &'static str, is_quiet: bool) -> Self {
-        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet, false);
+        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet);
         progress.bar.set_prefix(what);
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY); // The time left changes during long trials.
@@ -62,7 +62,7 @@ impl Progress {
     /// Work of a length that is not known: a spinner in a terminal, nothing elsewhere.
     pub fn of_work(what: String, is_quiet: bool) -> Self {
         let is_hidden = is_quiet || !stderr().is_terminal();
-        let progress = Self::new(0, OF_WORK, LINE_EVERY, is_hidden, false);
+        let progress = Self::new(0, OF_WORK, LINE_EVERY, is_hidden);
         progress.bar.set_message(printable(&what).into_owned());
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY);
@@ -70,10 +70,10 @@ impl Progress {
         progress
     }
 
-    fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
+    fn new(length: u64, template: &str, first: Duration, is_quiet: bool) -> Self {
         let (kind, target) = if is_quiet {
             (Kind::Silent, ProgressDrawTarget::hidden())
-        } else if stderr().is_terminal() && !is_raw {
+        } else if stderr().is_terminal() {
             (Kind::Bar, ProgressDrawTarget::stderr())
         } else {
             (Kind::Lines, ProgressDrawTarget::hidden())
@@ -104,8 +104,7 @@ impl Progress {
         self.bar.set_message(state.clone());
         self.bar.set_position(milliseconds(time_s - self.from_s));
         if self.kind == Kind::Lines {
-            // A raw terminal needs the carriage return.
-            say(stderr(), format_args!("{state}, {}\r", self.time_left()));
+            say(stderr(), format_args!("{state}, {}", self.time_left()));
         }
     }
 
@@ -120,7 +119,7 @@ impl Progress {
 
     /// Prints a line to the error output, above the bar.
     pub fn say(&self, what: impl Display) {
-        self.bar.suspend(|| say(stderr(), format_args!("{what}\r"))); // a raw terminal needs the carriage return
+        self.bar.suspend(|| say(stderr(), format_args!("{what}")));
     }
 
     fn time_left(&self) -> String {

@@ -42,7 +42,7 @@ pub struct Summary {
     pub world: String,
     /// The seed of all random streams.
     pub seed: u64,
-    /// The pilot: `agent`, `tour` or `keyboard`.
+    /// The pilot: `agent` or `tour`.
     pub drive: &'static str,
     /// The strategy of the agent; `null` for other pilots.
     pub strategy: Option<&'static str>,
@@ -50,7 +50,7 @@ pub struct Summary {
     pub estimator: &'static str,
     /// The occupancy model.
     pub occupancy: &'static str,
-    /// The reason for the end of the run: `duration`, `tour`, `person` or `interrupted`.
+    /// The reason for the end of the run: `duration`, `tour` or `interrupted`.
     pub ended_by: &'static str,
     /// The simulated time, s.
     pub simulated_s: f64,
@@ -132,7 +132,6 @@ impl fmt::Display for Summary {
         let Self { drive, world, simulated_s, wall_s, real_time_factor, .. } = self;
         let ended = match self.ended_by {
             "interrupted" => ", interrupted",
-            "person" => ", ended by the user",
             _ => "",
         };
         let simulated = match simulated_s {

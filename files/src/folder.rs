@@ -18,7 +18,7 @@ const MAX_LEFT: u32 = 9;
 const NAMES: &str = "\
     map_log.rrd summary.json report.json report.html trials.csv map.pgm map.yaml \
     permanent.pgm permanent.yaml speed_mask.pgm speed_mask.yaml keepout_mask.pgm keepout_mask.yaml \
-    cell_statistics.csv things.json layers.npy layers.json trajectory.tum trajectory_true.tum \
+    cell_statistics.csv things.json trajectory.tum trajectory_true.tum \
     trajectory.png figure3.png figure3.svg curves.png curves.svg figure5.png occupancy.png \
     interval.png change_probability.png recency.png predicted.png";
 

@@ -1,12 +1,14 @@
 //! `cell_statistics.csv`: what was learned about every cell.
 
-use crate::intervals::Intervals;
 use crate::numbers::rounded;
 use files::{OutputError, write_file};
 use interfaces::Cell;
 use mapper::{CellStatistics, Mapper};
 use nalgebra::Point2;
 use std::path::Path;
+
+/// The probability with which an interval contains the rate.
+const CREDIBLE_MASS: f64 = 0.9;
 
 /// A cell that was seen at least once.
 struct Seen<'a> {
@@ -23,7 +25,7 @@ struct Seen<'a> {
 type Column = (&'static str, fn(&Seen) -> String);
 
 /// The columns. Times are in seconds; `interval_s` is `inf` for a cell that never changed, `rate_high_hz` before the second reading.
-const COLUMNS: [Column; 20] = [
+const COLUMNS: [Column; 21] = [
     ("x_m", |of| micro(of.center.x)),
     ("y_m", |of| micro(of.center.y)),
     ("column", |of| of.cell.x.to_string()),
@@ -42,6 +44,7 @@ const COLUMNS: [Column; 20] = [
     ("rate_hz", |of| exact(of.mapper.rate(of.index))),
     ("rate_low_hz", |of| exact(of.rate_hz.0)),
     ("rate_high_hz", |of| exact(of.rate_hz.1)),
+    ("blocked_probability", |of| exact(of.mapper.blocked_probability(of.index))),
     ("change_probability", |of| exact(of.mapper.change_probability(of.index))),
     ("recency_s", |of| micro(of.mapper.recency(of.index))),
 ];
@@ -51,12 +54,13 @@ const COLUMNS: [Column; 20] = [
 /// # Errors
 ///
 /// When the file cannot be written.
-pub fn write(path: &Path, mapper: &Mapper, intervals: &Intervals) -> Result<(), OutputError> {
+pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     let frame = mapper.frame();
     write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
         table.write_record(COLUMNS.map(|(name, _)| name))?;
-        for (index, rate_hz) in intervals.of_cells(mapper) {
+        for index in mapper.seen() {
+            let rate_hz = mapper.credible_interval(index, CREDIBLE_MASS);
             let (cell, statistics) = (frame.cell(index), mapper.statistics(index));
             let of = Seen { mapper, index, cell, center: frame.center(cell), statistics, rate_hz };
             table.write_record(COLUMNS.map(|(_, text)| text(&of)))?;
@@ -99,7 +103,7 @@ mod tests {
         let mapper = mapper();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cell_statistics.csv");
-        write(&path, &mapper, &Intervals::of(&mapper)).unwrap();
+        write(&path, &mapper).unwrap();
 
         let mut table = csv::Reader::from_path(&path).unwrap();
         let header = table.headers().unwrap().clone();

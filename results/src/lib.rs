@@ -4,7 +4,6 @@
 
 pub mod cell_statistics;
 pub mod file_name;
-pub mod intervals;
 pub mod numbers;
 pub mod raster;
 pub mod ros_map;

@@ -157,8 +157,3 @@ fn command_lines() {
         assert!(message.contains(says), "{arguments}: {message}");
     }
 }
-
-#[test]
-fn a_keyboard_without_a_terminal() {
-    insta::assert_snapshot!(refused("--drive keyboard"), @"error: --drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here");
-}

@@ -17,7 +17,6 @@ mod flicker;
 mod folder;
 mod grid;
 mod houses;
-mod keyboard;
 mod map_log;
 mod map_log_poses;
 mod map_log_refusals;

@@ -19,7 +19,7 @@ fn a_bag_becomes_a_page_maps_masks_and_numbers() {
     let ended = run.goes_well("a.mcap --mcap copy.mcap");
     ended.prints(&["a.mcap: 901 scans in 90 s", "  route ", "  seen ", "  changes ", "  files     out"]);
     let expected = "cell_statistics.csv change_probability.png figure5.png interval.png keepout_mask.pgm \
-                    keepout_mask.yaml layers.json layers.npy map.pgm map.yaml map_log.rrd occupancy.png \
+                    keepout_mask.yaml map.pgm map.yaml map_log.rrd occupancy.png \
                     permanent.pgm permanent.yaml predicted.png recency.png report.html speed_mask.pgm \
                     speed_mask.yaml summary.json things.json trajectory.png trajectory.tum";
     let mut expected: Vec<&str> = expected.split(' ').collect();
@@ -32,9 +32,6 @@ fn a_bag_becomes_a_page_maps_masks_and_numbers() {
     assert!(summary.number("/scans_left_out") < 30.0);
     let poses = fs::read_to_string(run.out("trajectory.tum")).unwrap();
     assert_eq!(poses.lines().count(), 901);
-    // An array with one layer per name, of the size of the map.
-    let array = fs::read(run.out("layers.npy")).unwrap();
-    assert!(array.starts_with(b"\x93NUMPY"));
     let page = fs::read_to_string(run.out("report.html")).unwrap();
     for text in ["This map is good", "Where it changes", "901 scans in 2 min", "never seen"] {
         assert!(page.contains(text), "{text}");

@@ -79,7 +79,7 @@ fn a_missing_viewer_without_a_recording_is_an_error() {
 #[cfg(target_os = "linux")]
 fn a_terminal_shows_a_bar_that_goes_away() {
     let run = Run::new();
-    let ended = crate::terminal::run(&run, "--no-rrd --duration 300 --speed 200", |_| ());
+    let ended = crate::terminal::run(&run, "--no-rrd --duration 300 --speed 200");
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let (before, after) = ended.stdout.split_once("agent in four rooms: 5.0").unwrap();
     assert!(before.contains("█") && before.contains(" of 300 s at "), "{before:?}");

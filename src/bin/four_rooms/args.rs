@@ -68,9 +68,9 @@ pub(crate) struct Args {
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
 
-    /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
-    #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
-    pub(crate) speed: Option<f64>,
+    /// The speed as a multiple of real time, or max for full speed
+    #[arg(long, value_name = "FACTOR|max", default_value = "max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
+    pub(crate) speed: f64,
 
     /// The share of the time that the robot can be on patrol, for example 0.05: it has a battery, and a dock where it starts and
     /// rests, and returns before the battery is empty [default: as in the world file, otherwise always]
@@ -138,16 +138,6 @@ impl Args {
     pub(crate) fn strategy(&self) -> Policy {
         self.strategy.clone().unwrap_or_default()
     }
-
-    /// Whether a person drives.
-    pub(crate) fn is_keyboard(&self) -> bool {
-        self.drive == DriveChoice::Keyboard
-    }
-
-    /// The speed as a multiple of real time; ∞: as fast as possible.
-    pub(crate) fn speed(&self) -> f64 {
-        self.speed.unwrap_or(if self.is_keyboard() { 1.0 } else { f64::INFINITY })
-    }
 }
 
 impl DriveChoice {
@@ -155,7 +145,6 @@ impl DriveChoice {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Agent => "agent",
-            Self::Keyboard => "keyboard",
             Self::Tour => "tour",
         }
     }
@@ -166,8 +155,6 @@ impl DriveChoice {
 pub(crate) enum DriveChoice {
     /// The agent: it goes where an observation is worth most
     Agent,
-    /// The keyboard: arrows or WASD drive, space stops, Q ends the run; best with --view
-    Keyboard,
     /// A list of waypoints, see --tour
     Tour,
 }

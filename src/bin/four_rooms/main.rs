@@ -47,7 +47,6 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         }
         DriveChoice::Agent => explore(args, &parts, parts.trial(args, parts.agent(args)?)?),
         DriveChoice::Tour => explore(args, &parts, parts.trial(args, parts.tour(args)?)?),
-        DriveChoice::Keyboard => explore(args, &parts, parts.trial(args, parts.keyboard()?)?),
     }
 }
 

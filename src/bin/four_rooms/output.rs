@@ -20,7 +20,6 @@ use evaluation::summary::{SCHEMA, Summary};
 use files::{RunFolder, UnfinishedFile, write_file};
 use interfaces::{LaserReading, Twist, World};
 use mapper::Mapper;
-use results::intervals::Intervals;
 use results::thinned::Goals;
 use results::{TrajectoryFile, cell_statistics, file_name, ros_map, things};
 use robot::{BUILD, Pilot, Robot, Settings, Turn};
@@ -73,10 +72,7 @@ impl<'a> Outputs<'a> {
         if let Some(problem) = &reported {
             say(stderr(), format_args!("note: {problem}"));
         }
-        if args.is_keyboard() && !args.quiet {
-            say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
-        }
-        let progress = Progress::of_time(args.duration, args.quiet, args.is_keyboard()).from(began_s);
+        let progress = Progress::of_time(args.duration, args.quiet).from(began_s);
         if began_s > 0.0 && !args.quiet {
             progress.say(format_args!("the run goes on from {began_s:.1} s"));
         }
@@ -134,10 +130,10 @@ impl<'a> Outputs<'a> {
 
     /// Waits until a simulated time is due, in short naps: an interrupted run ends soon.
     pub(crate) fn keep_pace(&self, time_s: f64, start: Instant, is_interrupted: &AtomicBool) {
-        if self.args.speed().is_infinite() {
+        if self.args.speed.is_infinite() {
             return;
         }
-        let due = Duration::from_secs_f64((time_s - self.began_s).max(0.0) / self.args.speed());
+        let due = Duration::from_secs_f64((time_s - self.began_s).max(0.0) / self.args.speed);
         while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
             std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
         }
@@ -218,7 +214,7 @@ fn write(
     let to = folder.unfinished();
     show.write_pictures(to, mapper, goals, &Layer::ALL)?;
     ros_map::write(to, "map", mapper.states())?;
-    cell_statistics::write(&to.join("cell_statistics.csv"), mapper, &Intervals::of(mapper))?;
+    cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
     things::write(&to.join("things.json"), mapper)?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;
@@ -249,8 +245,7 @@ fn summary(
         occupancy: args.occupancy.name(),
         ended_by: match ended {
             Ended::Duration => "duration",
-            Ended::Pilot if args.drive == DriveChoice::Tour => "tour",
-            Ended::Pilot => "person",
+            Ended::Pilot => "tour",
             Ended::Interrupted => "interrupted",
         },
         simulated_s,

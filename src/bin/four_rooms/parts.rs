@@ -7,7 +7,6 @@ use cli::flags::value_of;
 use cli::program::{Failure, input, open_state, state_failure};
 use cli::terminal::say;
 use controller::{Controller, DiffDrive};
-use curious::keyboard::Keyboard;
 use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
@@ -119,12 +118,6 @@ impl Parts {
             (DriveChoice::Tour, Some(tour)) => facts.with("--tour", &tour.display().to_string()),
             _ => facts,
         }
-    }
-
-    pub(crate) fn keyboard(&self) -> Result<Keyboard, Failure> {
-        let drive = &self.settings.drive;
-        let max = Twist { linear_mps: drive.max_linear_mps, angular_radps: drive.max_angular_radps };
-        Keyboard::new(max).map_err(input)
     }
 }
 

@@ -24,7 +24,7 @@ use survey::{LogEntry, SurveySettings, saved_settings};
 /// for printing) with the places where something changes, pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
 /// (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
-/// cell (cell_statistics.csv, and layers.npy for NumPy with its names in layers.json), the trajectory (trajectory.tum, in the TUM format), and all
+/// cell (cell_statistics.csv), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
 ///
 /// The map is evaluated with its own scans: good, usable with care, or not usable, with the reasons and the uncertain places. A map

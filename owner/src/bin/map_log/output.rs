@@ -6,9 +6,8 @@ use crate::summary::Summary;
 use anyhow::Context;
 use draw::layers::Layer;
 use files::{RunFolder, write_file};
-use results::intervals::Intervals;
 use results::thinned::Thinned;
-use results::{cell_statistics, raster, ros_map, things};
+use results::{cell_statistics, ros_map, things};
 use survey::{MASKS, Survey, masks, permanent};
 
 /// The page for people.
@@ -35,9 +34,7 @@ pub(crate) fn write(
         for (name, mask) in MASKS.iter().zip(masks(mapper)) {
             ros_map::write_mask(to, name, &mask)?;
         }
-        let intervals = Intervals::of(mapper);
-        cell_statistics::write(&to.join("cell_statistics.csv"), mapper, &intervals)?;
-        raster::write(&to.join("layers.npy"), mapper, &intervals)?;
+        cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
         things::write(&to.join("things.json"), mapper)?;
     }
     let page = report::page(summary, mapper);

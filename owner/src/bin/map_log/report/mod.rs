@@ -250,7 +250,7 @@ fn files(has_rates: bool) -> Markup {
             li { "map.yaml: the map as last seen; permanent.yaml: the map without what moves (ROS map server)" }
             @if has_rates {
                 li { "speed_mask.yaml, keepout_mask.yaml: masks for the speed filter and the keepout filter of Nav2" }
-                li { "cell_statistics.csv, layers.npy: all that was learned about every cell; things.json: doors, and objects that come and go" }
+                li { "cell_statistics.csv: all that was learned about every cell; things.json: doors, and objects that come and go" }
             }
             li { "trajectory.tum: the route, with times; summary.json: this page as data" }
         }
