@@ -8,10 +8,7 @@ use std::io::{self, ErrorKind, Write, stdout};
 
 /// Prints lines to the error output. A failure is ignored: there is no other place to report it.
 pub fn say(mut to: impl Write, what: impl Display) {
-    let text = what.to_string();
-    // A raw terminal needs the carriage return.
-    let (lines, end) = text.strip_suffix('\r').map_or((&*text, ""), |lines| (lines, "\r"));
-    let _ = writeln!(to, "{}{end}", printable_lines(lines));
+    let _ = writeln!(to, "{}", printable_lines(&what.to_string()));
 }
 
 /// Prints one line to the standard output: a line break in a name forges no other one.
