@@ -1,26 +1,4 @@
-use interfaces::{CellState, SettingsCheck, SettingsError, Transition};
-
-/// The events that count as map updates in the reward of a trajectory.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Reward {
-    /// Changes of a known cell: free to blocked, blocked to free.
-    #[default]
-    Changes,
-    /// First observations as well. A laser has thousands of them in one scan, far more than the temperature.
-    ChangesAndDiscoveries,
-}
-
-impl Reward {
-    /// The number of transitions that count as map updates.
-    pub(crate) fn count(self, transitions: &[Transition]) -> usize {
-        let counts = |transition: &&Transition| {
-            let is_discovery = transition.before == CellState::Unknown;
-            transition.event().is_some() || self == Self::ChangesAndDiscoveries && is_discovery
-        };
-        transitions.iter().filter(counts).count()
-    }
-}
+use interfaces::{SettingsCheck, SettingsError};
 
 /// Settings of an [`Agent`](crate::Agent).
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -29,8 +7,6 @@ pub struct AgentSettings {
     pub patch_cells: usize,
     /// The range of the sensor, m. Used by strategies that compute visibility.
     pub sensor_radius_m: f64,
-    /// The events that count as map updates.
-    pub reward: Reward,
     /// *Unseen first*: whether the robot looks into unseen space that it can reach before it asks its strategies. The paper's robot
     /// does not, nor does any robot where strategies are compared: with it, all of them cover the same place at first.
     pub unseen_first: bool,
@@ -41,13 +17,7 @@ pub struct AgentSettings {
 
 impl Default for AgentSettings {
     fn default() -> Self {
-        Self {
-            patch_cells: 5,
-            sensor_radius_m: 10.0,
-            reward: Reward::default(),
-            unseen_first: false,
-            temperature: 2.0,
-        }
+        Self { patch_cells: 5, sensor_radius_m: 10.0, unseen_first: false, temperature: 2.0 }
     }
 }
 

@@ -169,7 +169,7 @@ fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
     let remembering = Remembering { agent: agent(policy), visits: Vec::new() };
     let mut run = Run::new(&spec, autonomous(remembering)).run();
-    let visits = std::mem::take(&mut run.robot.pilot.selector_mut().visits);
+    let visits = std::mem::take(&mut run.robot.pilot.selector.visits);
     let robot = run.world.robot();
     let again = || autonomous(Repeating(visits.clone().into_iter()));
     assert_eq!(Run::new(&spec, again()).run().world.robot(), robot, "the same goals, the same way");

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-pub const SCHEMA: u32 = 4;
+pub const SCHEMA: u32 = 5;
 
 /// Coverage and map quality at one time.
 #[derive(Clone, Copy, Debug, Serialize)]

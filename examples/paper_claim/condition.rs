@@ -1,6 +1,5 @@
 //! The conditions: each differs from the paper's condition in one setting.
 
-use agent::Reward;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::trials::{Experiment, GridRobot, TrialSettings, TrialStrategy};
 use mapper::{EstimatorChoice, Paper, PaperAll};
@@ -21,7 +20,6 @@ pub(crate) struct Condition {
     sensor_radius: u32,
     steps: u64,
     estimator: EstimatorChoice,
-    reward: Reward,
     /// The probability of a move of a block or of the robot.
     chance: f64,
     /// The maximum number of steps of local exploration.
@@ -35,7 +33,6 @@ pub(crate) fn conditions() -> Vec<Condition> {
         sensor_radius: 4,
         steps: 20_000,
         estimator: Paper.into(),
-        reward: Reward::Changes,
         chance: 1.0,
         max_steps: 42,
     };
@@ -54,9 +51,6 @@ pub(crate) fn conditions() -> Vec<Condition> {
     conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = PaperAll.into()));
     let best = EstimatorChoice::default();
     conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best.clone()));
-    conditions.push(change("reward with discoveries".to_owned(), &|other| {
-        other.reward = Reward::ChangesAndDiscoveries;
-    }));
     conditions.push(change("stochastic moves (0.8)".to_owned(), &|other| other.chance = 0.8));
     for bound in [1, 10, 100] {
         conditions.push(change(format!("max_steps {bound}"), &|other| other.max_steps = bound));
@@ -97,7 +91,7 @@ impl Condition {
             trials,
             seed: 0,
             length: self.steps,
-            robot: GridRobot { reward: self.reward, max_steps: self.max_steps },
+            robot: GridRobot { max_steps: self.max_steps },
         }
     }
 }

@@ -8,8 +8,10 @@ use nalgebra::Isometry2;
 /// The pilot of a robot that explores: a goal selector, and a driver to the goals.
 #[derive(Debug)]
 pub struct Autonomous<G, D> {
-    selector: G,
-    driver: D,
+    /// The goal selector.
+    pub selector: G,
+    /// The driver.
+    pub driver: D,
     goals: GoalCount,
     messages: Vec<Message>,
     is_done: bool,
@@ -20,16 +22,6 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
     pub fn new(selector: G, driver: D) -> Self {
         let (goals, messages) = (GoalCount::default(), Vec::new());
         Self { selector, driver, goals, messages, is_done: false }
-    }
-
-    /// The goal selector.
-    pub fn selector_mut(&mut self) -> &mut G {
-        &mut self.selector
-    }
-
-    /// The driver.
-    pub fn driver_mut(&mut self) -> &mut D {
-        &mut self.driver
     }
 
     fn log(&mut self, level: Level, text: String) {

@@ -296,7 +296,7 @@ fn permissions_hold_for_every_driver() {
         pilot.command(&belief, Features::default(), &map);
     }
     pilot.forget_map();
-    assert_eq!(pilot.driver_mut().asked, ["rest", "look around", "drive", "goal", "drive", "forget map"]);
+    assert_eq!(pilot.driver.asked, ["rest", "look around", "drive", "goal", "drive", "forget map"]);
     assert_eq!(pilot.view().goals.reached, 0);
     pilot.command(&Belief::exact(Isometry2::identity()), Features::default(), &map);
     assert_eq!(pilot.view().goals.reached, 1);
@@ -330,8 +330,8 @@ fn goals_that_a_rest_ends_have_no_outcome() {
     pilot.rest(&belief.pose, features, &map);
     pilot.command(&belief, features, &map);
     let goes = ["drive", "goal", "drive"];
-    assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
-    assert_eq!((pilot.view().goals, pilot.selector_mut().0), (GoalCount::default(), 1));
+    assert_eq!(pilot.driver.asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
+    assert_eq!((pilot.view().goals, pilot.selector.0), (GoalCount::default(), 1));
     // The goal is replaced on the way.
     let driver = Jumping { is_slow: true, ..Jumping::default() };
     let mut pilot = Autonomous::new(Ended::default(), driver);
@@ -340,6 +340,6 @@ fn goals_that_a_rest_ends_have_no_outcome() {
             Some((goals.next_goal(&belief.pose, &map, travel)?, goals.reason()))
         });
     }
-    assert_eq!(pilot.driver_mut().asked, [goes, goes].concat());
+    assert_eq!(pilot.driver.asked, [goes, goes].concat());
     assert_eq!(pilot.view().goals, GoalCount::default());
 }

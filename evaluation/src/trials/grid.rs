@@ -1,5 +1,5 @@
 use super::{Length, TrialError, TrialRobot, TrialSettings, TrialWorld};
-use agent::{Agent, AgentSettings, Policy, Reward};
+use agent::{Agent, AgentSettings, Policy};
 use controller::{CellDrive, Controller};
 use interfaces::{Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
@@ -9,15 +9,13 @@ use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 /// The settings of the robot in grid worlds.
 #[derive(Clone, Debug)]
 pub struct GridRobot {
-    /// The events that count as map updates.
-    pub reward: Reward,
     /// The maximum number of steps of local exploration.
     pub max_steps: u32,
 }
 
 impl Default for GridRobot {
     fn default() -> Self {
-        Self { reward: Reward::default(), max_steps: 42 }
+        Self { max_steps: 42 }
     }
 }
 
@@ -51,11 +49,7 @@ impl TrialWorld for GridSpec {
 
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
         let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
-        let settings = AgentSettings {
-            sensor_radius_m,
-            reward: trial.experiment.robot.reward,
-            ..AgentSettings::default()
-        };
+        let settings = AgentSettings { sensor_radius_m, ..AgentSettings::default() };
         Ok(Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?)
     }
 

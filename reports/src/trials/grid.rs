@@ -82,7 +82,7 @@ impl TrialKind for GridWorlds {
     }
 
     fn robot(&self, max_steps: u32) -> GridRobot {
-        GridRobot { max_steps, ..GridRobot::default() }
+        GridRobot { max_steps }
     }
 
     fn to_toml(world: &GridSpec) -> Option<String> {

@@ -35,10 +35,10 @@ pub struct Fleet {
     seed: u64,
     /// Steps since the start. Time is a multiple of the step, so that it never drifts.
     step: u64,
-    bodies: Bodies,
+    pub(super) bodies: Bodies,
     pub(super) robots: Vec<SimulatedRobot>,
     pub(super) obstacles: Vec<Obstacle>,
-    scene: Scene,
+    pub(super) scene: Scene,
     past: Past,
     pub(super) contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with the shape before the step.
@@ -132,18 +132,6 @@ impl Fleet {
     /// The obstacles that moved in the last step, each with the shapes before and after the step.
     pub(super) fn moved(&self) -> impl ExactSizeIterator<Item = (usize, Rectangle, Rectangle)> {
         self.moved.iter().map(|(index, before)| (*index, *before, self.obstacles[*index].shape))
-    }
-
-    /// The scene that lasers see, and the bodies.
-    #[cfg(test)]
-    pub(super) fn into_parts(self) -> (Scene, Bodies) {
-        (self.scene, self.bodies)
-    }
-
-    /// The kinetic energy of all dynamic bodies, J.
-    #[cfg(test)]
-    pub(super) fn kinetic_j(&self) -> f64 {
-        self.bodies.kinetic_j()
     }
 
     /// Updates a robot in the scene that lasers see.

@@ -108,7 +108,7 @@ impl Place {
                     .push((robot.index, robot.corners.iter().map(|corner| robot.pose * corner).collect()));
             }
         }
-        let (scene, mut bodies) = fleet.into_parts();
+        let (scene, mut bodies) = (fleet.scene, fleet.bodies);
         bodies.find_again();
         Self { spec, scene, bodies, boxes, discs, cornered }
     }
