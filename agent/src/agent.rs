@@ -1,9 +1,9 @@
 use crate::choosers::{Chooser, Trajectory};
 use crate::goal_sampler::{Goal, sample};
 use crate::policy::Policy;
-use crate::settings::{AgentSettings, Reward};
+use crate::settings::AgentSettings;
 use crate::situation::{Features, Situation, Travel};
-use crate::strategies::Strategy;
+use crate::strategies::{Stay, Strategy};
 use crate::unseen::UnseenSpace;
 use interfaces::{RandomStream, SettingsError, Transition, Values, values};
 use mapper::Mapper;
@@ -65,7 +65,6 @@ pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
     chooser: Box<dyn Chooser>,
     patch_cells: usize,
-    reward: Reward,
     /// Looks into unseen space before the strategies decide; `None`: the strategies decide alone.
     unseen: Option<UnseenSpace>,
     /// The travel time to each cell, for strategies that need it.
@@ -75,7 +74,7 @@ pub struct Agent {
     current: Option<usize>,
     /// The features of every reading since the present goal was sampled, T of section 4.
     trajectory: Vec<Features>,
-    /// The map updates in these readings.
+    /// The map updates in these readings: changes of known cells.
     updates: usize,
     features: Features,
     /// The number of goals that were selected by each strategy.
@@ -121,7 +120,6 @@ impl Agent {
             strategies,
             chooser,
             patch_cells: settings.patch_cells,
-            reward: settings.reward,
             unseen: settings
                 .unseen_first
                 .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
@@ -171,10 +169,14 @@ impl GoalSelector for Agent {
             travel.times(mapper, pose, &mut self.travel);
         }
         let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
-        let look = self.unseen.as_mut().filter(|_| looks).and_then(|unseen| unseen.goal(&situation));
-        if look.is_some() {
+        if let Some(unseen) = self.unseen.as_mut().filter(|_| looks)
+            && let Some(look) = unseen.look(&situation)
+        {
             self.current = None;
-            return look;
+            return Some(Goal {
+                position: mapper.frame().center(look.from),
+                stay: Stay::Watch(unseen.begin(look)),
+            });
         }
         let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
         self.current = Some(strategy);
@@ -204,7 +206,7 @@ impl GoalSelector for Agent {
         self.features = features;
         if self.current.is_some() {
             self.trajectory.push(features);
-            self.updates += self.reward.count(transitions);
+            self.updates += transitions.iter().filter(|transition| transition.event().is_some()).count();
         }
     }
 

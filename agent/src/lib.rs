@@ -17,6 +17,8 @@ mod policy;
 mod settings;
 mod situation;
 mod strategies;
+mod travel;
+mod trips;
 mod unseen;
 mod visibility;
 
@@ -24,6 +26,8 @@ pub use agent::{Agent, GoalSelector, StrategyState};
 pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
 pub use goal_sampler::Goal;
 pub use policy::{Parts, Policy};
-pub use settings::{AgentSettings, Reward};
+pub use settings::AgentSettings;
 pub use situation::{Features, Situation, Travel};
-pub use strategies::{FreshMap, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy};
+pub use strategies::{
+    Age, BestTrip, Brier, Elapsed, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy, Worth,
+};

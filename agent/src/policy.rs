@@ -1,6 +1,6 @@
 use crate::choosers::{Always, Chooser, Coin, Curious};
 use crate::settings::AgentSettings;
-use crate::strategies::{FreshMap, InformationGain, Poisson, Random, Recency, Strategy};
+use crate::strategies::{Age, BestTrip, Brier, InformationGain, Poisson, Random, Recency, Strategy};
 use interfaces::RandomStream;
 use std::num::NonZeroUsize;
 use std::sync::{Arc, LazyLock};
@@ -55,7 +55,12 @@ static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
         Policy::single("poisson", "cells that probably changed (paper)", |_| Poisson),
         Policy::single("random", "any cell: a baseline", |_| Random),
         Policy::new("coin", "recency or poisson by a fair coin: the baseline of learners", coin),
-        Policy::single("fresh-map", "least error of the predicted map, per time", FreshMap::new),
+        Policy::single("coverage", "most area not seen for long, per time", |settings| {
+            BestTrip::new(Age, settings)
+        }),
+        Policy::single("fresh-map", "least error of the predicted map, per time", |settings| {
+            BestTrip::new(Brier, settings)
+        }),
         Policy::single("information-gain", "least error of the rates, per time", InformationGain::new),
     ]
 });
@@ -151,8 +156,8 @@ mod tests {
     fn an_unknown_name_lists_the_known_ones() {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
-            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, fresh-map, \
-             information-gain"
+            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, coverage, \
+             fresh-map, information-gain"
         );
     }
 }

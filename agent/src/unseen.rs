@@ -6,9 +6,7 @@
 //! A look that shows nothing new is repeated after a time that doubles with every such look: what hides the frontier
 //! may be a door, or a body that moves away.
 
-use crate::goal_sampler::Goal;
 use crate::situation::Situation;
-use crate::strategies::Stay;
 use crate::visibility::Regions;
 use interfaces::{Cell, CellState, GridFrame, Values, value};
 use mapper::Mapper;
@@ -20,9 +18,9 @@ use std::f64::consts::TAU;
 const WATCH: f64 = 2.5;
 /// The time after which a look that showed nothing new is repeated for the first time, in the time unit of the readings.
 const RETRY: f64 = 30.0;
-/// The minimum number of frontier cells in a region that are worth a goal: single cells at corners and edges often stay
-/// unknown from everywhere.
-const MIN_CELLS: usize = 2;
+/// The shortest frontier in a region that is worth a goal, m: in a fine grid, single cells at corners and edges often stay unknown from
+/// everywhere.
+const MIN_FRONTIER_M: f64 = 0.1;
 /// The number of directions in which a line of sight is searched. With more directions the search takes longer than the
 /// mapper and the controller together.
 const DIRECTIONS: u32 = 240;
@@ -45,6 +43,18 @@ struct Target {
     region: usize,
     /// A frontier cell in the region.
     cell: usize,
+}
+
+/// A look into unseen space that is possible now.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct UnseenLook {
+    target: Target,
+    /// The cell from which the robot looks.
+    pub(crate) from: Cell,
+    /// The time to get there and to look.
+    pub(crate) time: f64,
+    /// The frontier cells that it shows per time.
+    cells_per_time: f64,
 }
 
 /// Selects goals from which the frontier of unseen space can be seen.
@@ -109,30 +119,34 @@ impl UnseenSpace {
         (0..regions.count()).any(|region| self.is_due(region, mapper.time()))
     }
 
-    /// The goal for the region with most frontier cells per time to get a view of it; `None` if none of the frontier that
+    /// The look at the region with most frontier cells per time to get a view of it; `None` if none of the frontier that
     /// is due can be seen from a cell that the robot can reach. The situation must have travel times.
-    pub(crate) fn goal(&mut self, situation: &Situation) -> Option<Goal> {
+    pub(crate) fn look(&mut self, situation: &Situation) -> Option<UnseenLook> {
         let mapper = situation.mapper;
         let regions = self.regions(mapper);
         let mut due: Vec<usize> =
             (0..regions.count()).filter(|&region| self.is_due(region, mapper.time())).collect();
         due.sort_by_key(|&region| Reverse(self.frontier[region]));
-        let mut best: Option<(f64, Target, Cell)> = None;
+        let mut best: Option<UnseenLook> = None;
         for region in due {
             let worth = |time: f64| self.frontier[region] as f64 / (time + WATCH);
             // The regions that follow have no more frontier. To find a viewpoint takes much longer than all else here.
-            if best.is_some_and(|(most, ..)| worth(0.0) <= most) {
+            if best.is_some_and(|look| worth(0.0) <= look.cells_per_time) {
                 break;
             }
             let Some(target) = self.target_in(mapper, &regions, region) else { continue };
-            let Some((time, cell)) = self.viewpoint(situation, target.cell) else { continue };
-            if best.is_none_or(|(most, ..)| worth(time) > most) {
-                best = Some((worth(time), target, cell));
+            let Some((time, from)) = self.viewpoint(situation, target.cell) else { continue };
+            if best.is_none_or(|look| worth(time) > look.cells_per_time) {
+                best = Some(UnseenLook { target, from, time: time + WATCH, cells_per_time: worth(time) });
             }
         }
-        let (_, target, cell) = best?;
-        self.target = Some(target);
-        Some(Goal { position: mapper.frame().center(cell), stay: Stay::Watch(WATCH) })
+        best
+    }
+
+    /// Begins a look. Returns its maximum duration.
+    pub(crate) fn begin(&mut self, look: UnseenLook) -> f64 {
+        self.target = Some(look.target);
+        WATCH
     }
 
     /// Whether the last goal has shown what the robot went to look at.
@@ -143,7 +157,9 @@ impl UnseenSpace {
     }
 
     fn is_due(&self, region: usize, time: f64) -> bool {
-        self.frontier[region] >= MIN_CELLS && time >= self.looks[region].not_before
+        let cell_m = self.frame.map_or(0.0, |frame| frame.resolution_m());
+        let frontier_m = self.frontier[region] as f64 * cell_m;
+        frontier_m > MIN_FRONTIER_M - 1e-9 && time >= self.looks[region].not_before
     }
 
     fn regions(&mut self, mapper: &Mapper) -> Regions {

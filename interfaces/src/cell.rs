@@ -40,8 +40,12 @@ impl Cell {
 
     /// The cells of this [square](Self::square) whose centers are at most `reach` sides of a cell away.
     pub fn disc(self, reach: i32) -> impl Iterator<Item = Self> {
-        let is_near = move |cell: &Self| (cell.x - self.x).pow(2) + (cell.y - self.y).pow(2) <= reach * reach;
-        self.square(reach).filter(is_near)
+        self.square(reach).filter(move |cell| self.is_within(*cell, reach))
+    }
+
+    /// Whether the center of a cell near this one is at most `reach` sides of a cell away.
+    pub fn is_within(self, cell: Self, reach: i32) -> bool {
+        (cell.x - self.x).pow(2) + (cell.y - self.y).pow(2) <= reach * reach
     }
 
     /// The cell that contains the mean of the positions of `cells`; `None` for no cells.

@@ -27,9 +27,10 @@ mod tiles;
 
 pub use change::{
     CellMap, CellStatistics, Estimator, EstimatorChoice, Evidence, GapWorth, Paper, PaperAll, Population,
-    Posterior, RateDistribution, ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
+    Posterior, RateDistribution, ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps, Waiting,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week};
+pub use derived::Undiscovered;
 pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,

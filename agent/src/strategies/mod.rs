@@ -2,13 +2,17 @@
 //!
 //! A row in the table of `docs/strategies.md` is needed as well; a test compares the table with `BUILT_IN`.
 
+mod best_trip;
+mod coverage;
 mod fresh_map;
 mod information_gain;
 mod poisson;
 mod random;
 mod recency;
 
-pub use fresh_map::FreshMap;
+pub use best_trip::{BestTrip, Elapsed, Worth};
+pub use coverage::Age;
+pub use fresh_map::Brier;
 pub use information_gain::InformationGain;
 pub use poisson::Poisson;
 pub use random::Random;

@@ -8,10 +8,10 @@ mod shadow_casting;
 
 pub(crate) use shadow_casting::Regions;
 
-use crate::Situation;
-use interfaces::{Cell, CellState, GridFrame, Values, runs, value};
+use interfaces::CellState;
 use mapper::Mapper;
 use shadow_casting::cast;
+use std::ops::Range;
 
 /// The view from every region, within the radius of the robot's sensor.
 ///
@@ -19,11 +19,14 @@ use shadow_casting::cast;
 /// again and counts as transparent; unknown cells count as transparent, too.
 #[derive(Clone, Debug)]
 pub(crate) struct Visibility {
-    radius_m: f64,
-    regions: Option<Regions>,
+    /// The range of the sensor, m.
+    pub(crate) radius_m: f64,
+    /// Those of the last map.
+    pub(crate) regions: Option<Regions>,
     opaque: Vec<bool>,
-    /// For each region the regions in view; `None` until they are needed.
-    views: Vec<Option<Vec<u32>>>,
+    /// For each region the regions in view, as runs: in a row of the map they are mostly beside each other. `None` until they are
+    /// needed.
+    views: Vec<Option<Vec<Range<u32>>>>,
 }
 
 impl Visibility {
@@ -34,7 +37,7 @@ impl Visibility {
 
     /// Applies the present map and returns its regions. Call it before views are computed. One pass over the map.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
-        let regions = Regions::new(*mapper.frame(), self.radius_m);
+        let regions = Regions::of_sensor(*mapper.frame(), self.radius_m);
         if self.regions != Some(regions) {
             self.regions = Some(regions);
             self.opaque = vec![false; regions.count()];
@@ -63,9 +66,13 @@ impl Visibility {
     }
 
     /// The regions in view from a region, in order, including the region itself.
-    pub(crate) fn seen_from(&mut self, region: usize) -> &[u32] {
-        let Self { regions: Some(regions), opaque, views, radius_m } = self else { return &[] };
-        views[region].get_or_insert_with(|| cast(regions, opaque, region, regions.reach(*radius_m)))
+    pub(crate) fn seen_from(&mut self, region: usize) -> impl Iterator<Item = usize> {
+        let Self { regions, opaque, views, radius_m } = self;
+        let runs = regions.as_ref().map(|regions| {
+            let view = &mut views[region];
+            &*view.get_or_insert_with(|| runs(&cast(regions, opaque, region, regions.reach(*radius_m))))
+        });
+        runs.into_iter().flatten().flat_map(|run| run.start as usize..run.end as usize)
     }
 
     /// Drops the stored views that may contain a region.
@@ -79,104 +86,9 @@ impl Visibility {
     }
 }
 
-/// Visibility, and for each cell the last visit from which it should have been in view. For strategies that select a
-/// goal by the number of cells that come into view.
-///
-/// The history is needed because an obstacle that hides a cell is not always on the map. Without the history the
-/// robot would return again and again to see a cell that cannot be seen.
-#[derive(Clone, Debug)]
-pub(crate) struct ViewHistory {
-    visibility: Visibility,
-    frame: Option<GridFrame>,
-    /// For each cell, the end of the last visit from which it should have been in view, whether or not it was seen.
-    visited: Vec<f64>,
-    /// The index of the cell of the last goal, until the visit is over.
-    goal: Option<usize>,
-}
-
-impl ViewHistory {
-    /// For a robot whose sensor has the range `radius_m`.
-    pub(crate) fn new(radius_m: f64) -> Self {
-        Self { visibility: Visibility::new(radius_m), frame: None, visited: Vec::new(), goal: None }
-    }
-
-    /// Applies the present map, and the finished visit of the last goal. Returns the regions of the map.
-    pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
-        let regions = self.visibility.update(mapper);
-        self.set_frame(*mapper.frame());
-        self.end_visit(&regions, mapper.time());
-        regions
-    }
-
-    /// Ends the visit of the last goal, where no other goal follows for a while. On the way to its goal, the robot has
-    /// been called away: there was no visit.
-    pub(crate) fn end(&mut self, situation: &Situation) {
-        let mapper = situation.mapper;
-        let regions = self.visibility.update(mapper);
-        self.set_frame(*mapper.frame());
-        let is_there = |goal: &usize| regions.are_near(situation.cell(), mapper.frame().cell(*goal));
-        self.goal = self.goal.filter(is_there);
-        self.end_visit(&regions, mapper.time());
-    }
-
-    fn end_visit(&mut self, regions: &Regions, time: f64) {
-        let Some(goal) = self.goal.take() else { return };
-        for &region in self.visibility.seen_from(regions.of(goal)) {
-            for cell in regions.cells(region as usize) {
-                self.visited[cell] = time;
-            }
-        }
-    }
-
-    fn set_frame(&mut self, frame: GridFrame) {
-        if self.frame != Some(frame) {
-            self.frame = Some(frame);
-            self.visited = vec![0.0; frame.len()];
-            self.goal = None;
-        }
-    }
-
-    /// The visits so far, and the present one.
-    pub(crate) fn values(&mut self, mapper: &Mapper) -> Values<'_> {
-        self.set_frame(*mapper.frame());
-        vec![runs(&mut self.visited), value(&mut self.goal)]
-    }
-
-    /// Begins the visit of a goal.
-    pub(crate) fn go_to(&mut self, goal: Cell) {
-        self.goal = self.frame.and_then(|frame| frame.index(goal));
-    }
-
-    /// The time since the cell was last seen or should have been seen.
-    #[inline]
-    pub(crate) fn elapsed(&self, mapper: &Mapper, cell: usize) -> f64 {
-        mapper.recency(cell).min(mapper.time() - self.visited[cell])
-    }
-
-    /// Writes the weight of each candidate: the sum of `worth` (one value per region) over the regions in view from
-    /// there, divided by the time to get there and to stop for `watch`.
-    pub(crate) fn weigh(
-        &mut self,
-        situation: &Situation,
-        regions: &Regions,
-        worth: &[f64],
-        watch: f64,
-        weights: &mut [f64],
-    ) {
-        for region in 0..regions.count() {
-            let mut in_view = None; // Not computed for regions that the robot cannot enter.
-            for cell in regions.cells(region) {
-                let time = situation.travel_to(cell) + watch;
-                if time < f64::INFINITY && situation.mapper.is_candidate(cell) {
-                    let in_view = *in_view.get_or_insert_with(|| {
-                        let seen = self.visibility.seen_from(region).iter();
-                        seen.map(|&seen| worth[seen as usize]).sum::<f64>()
-                    });
-                    weights[cell] = in_view / time;
-                }
-            }
-        }
-    }
+/// The runs of consecutive numbers in a sorted list.
+fn runs(numbers: &[u32]) -> Vec<Range<u32>> {
+    numbers.chunk_by(|one, next| one + 1 == *next).map(|run| run[0]..run[run.len() - 1] + 1).collect()
 }
 
 #[cfg(test)]
@@ -208,8 +120,8 @@ mod tests {
     fn drawn(visibility: &mut Visibility, mapper: &Mapper, from: Cell) -> Vec<String> {
         let regions = visibility.update(mapper);
         let frame = mapper.frame();
-        let seen = visibility.seen_from(regions.of(frame.index(from).unwrap())).to_vec();
-        let letter = |index: usize| if seen.contains(&(regions.of(index) as u32)) { 'o' } else { '-' };
+        let seen: Vec<usize> = visibility.seen_from(regions.of(frame.index(from).unwrap())).collect();
+        let letter = |index: usize| if seen.contains(&regions.of(index)) { 'o' } else { '-' };
         let row = |y: usize| (0..frame.width()).map(|x| letter(y * frame.width() + x)).collect();
         (0..frame.height()).rev().map(row).collect()
     }
@@ -242,7 +154,7 @@ mod tests {
         );
         cells.sort_unstable();
         assert_eq!(cells, (0..frame.len()).collect::<Vec<_>>());
-        assert_eq!(visibility.seen_from(0).len(), 25 * 20, "up to the wall, the wall included");
+        assert_eq!(visibility.seen_from(0).count(), 25 * 20, "up to the wall, the wall included");
     }
 
     /// Whether the line from the center of `from` to that of `to` passes through the inside of the
@@ -280,7 +192,7 @@ mod tests {
             let regions = visibility.update(&mapper);
             for origin in 0..regions.count() {
                 let from = frame.cell(origin);
-                let expected: Vec<u32> = (0..regions.count())
+                let expected: Vec<usize> = (0..regions.count())
                     .filter(|&index| {
                         let to = frame.cell(index);
                         let is_between = |&wall: &usize| {
@@ -290,9 +202,9 @@ mod tests {
                         f64::from((to.x - from.x).pow(2) + (to.y - from.y).pow(2)) <= reach * reach
                             && !(0..regions.count()).any(|wall| is_between(&wall))
                     })
-                    .map(|index| index as u32)
                     .collect();
-                prop_assert_eq!(visibility.seen_from(origin), &expected, "from {:?}", from);
+                let seen: Vec<usize> = visibility.seen_from(origin).collect();
+                prop_assert_eq!(seen, expected, "from {:?}", from);
             }
         }
     }

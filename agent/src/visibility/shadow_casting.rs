@@ -86,26 +86,37 @@ pub(super) fn cast(regions: &Regions, opaque: &[bool], origin: usize, reach: f64
     seen
 }
 
-/// The maximum number of regions from the sensor to the end of its range: more would take long and change little.
+/// The maximum number of regions from the sensor to the end of its range, and of all regions: more would take long and change little.
 const REACH_REGIONS: f64 = 40.0;
+const MAX_REGIONS: usize = 40_000;
 
 /// The map divided into square regions of `side` × `side` cells, from its lower left corner on; regions at the
 /// right and upper border can be smaller. A region has an index in row-major order, like a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Regions {
     frame: GridFrame,
-    pub(super) side: usize,
+    /// The side of a region, cells.
+    pub(crate) side: usize,
     pub(super) columns: usize,
     pub(super) rows: usize,
 }
 
 impl Regions {
     /// The regions for a sensor with the range `radius_m`.
-    pub(super) fn new(frame: GridFrame, radius_m: f64) -> Self {
+    pub(crate) fn of_sensor(frame: GridFrame, radius_m: f64) -> Self {
         let reach_cells = radius_m / frame.resolution_m();
         // At least one cell, and at most the whole map. The cast saturates.
         let side = ((reach_cells / REACH_REGIONS).ceil() as usize).max(1);
-        Self::with_side(frame, side.min(frame.width().max(frame.height())))
+        Self::at_most(MAX_REGIONS, frame, side.min(frame.width().max(frame.height())))
+    }
+
+    /// At most `count` regions of at least `side` × `side` cells.
+    pub(crate) fn at_most(count: usize, frame: GridFrame, side: usize) -> Self {
+        let mut regions = Self::with_side(frame, side);
+        while regions.count() > count.max(1) {
+            regions = Self::with_side(frame, regions.side + 1);
+        }
+        regions
     }
 
     /// Regions of `side` × `side` cells.

@@ -4,7 +4,7 @@ use crate::drawing::{
     agent, can_be_a_goal, current, empty, map, names, next, next_from, reading, rng, weigh_from,
 };
 use agent::{
-    Agent, AgentSettings, Chooser, Features, FreshMap, GoalSelector, Policy, Random, Recency, Reward,
+    Agent, AgentSettings, BestTrip, Brier, Chooser, Features, GoalSelector, Policy, Random, Recency,
     Situation, Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
@@ -168,26 +168,23 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
     let (found, block, free) = (turn(Unknown, Free), turn(Free, Blocked), turn(Blocked, Free));
     let at = |p| Features { p, r: 10.0 * p };
     let mapper = map(&[(0.0, &["..."])]);
-    for (reward, first, second) in [(Reward::Changes, 0.5, 2.0), (Reward::ChangesAndDiscoveries, 1.0, 2.0)] {
-        let pupil = Pupil::default();
-        let lessons = Lessons::clone(&pupil.lessons);
-        let settings = AgentSettings { reward, ..Default::default() };
-        let mut agent = taught(&settings, pupil);
-        agent.observe(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
-        next(&mut agent, &mapper);
-        agent.observe(at(1.0), &[block, found]);
-        agent.observe(at(2.0), &[]);
-        agent.observe(at(3.0), &[free, found]);
-        agent.observe(at(4.0), &[]);
-        next(&mut agent, &mapper);
-        assert_eq!(agent.last_reward(), first);
-        next(&mut agent, &mapper); // No reading since then: nothing to learn.
-        agent.observe(at(5.0), &[block, free]);
-        next(&mut agent, &mapper);
-        assert_eq!(agent.last_reward(), second);
-        let expected = [(0, [1.0, 2.0, 3.0, 4.0].map(at).to_vec(), first), (0, vec![at(5.0)], second)];
-        assert_eq!(*lessons.lock().unwrap(), expected);
-    }
+    let pupil = Pupil::default();
+    let lessons = Lessons::clone(&pupil.lessons);
+    let mut agent = taught(&AgentSettings::default(), pupil);
+    agent.observe(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
+    next(&mut agent, &mapper);
+    agent.observe(at(1.0), &[block, found]);
+    agent.observe(at(2.0), &[]);
+    agent.observe(at(3.0), &[free, found]);
+    agent.observe(at(4.0), &[]);
+    next(&mut agent, &mapper);
+    assert_eq!(agent.last_reward(), 0.5);
+    next(&mut agent, &mapper); // No reading since then: nothing to learn.
+    agent.observe(at(5.0), &[block, free]);
+    next(&mut agent, &mapper);
+    assert_eq!(agent.last_reward(), 2.0);
+    let expected = [(0, [1.0, 2.0, 3.0, 4.0].map(at).to_vec(), 0.5), (0, vec![at(5.0)], 2.0)];
+    assert_eq!(*lessons.lock().unwrap(), expected);
 }
 
 #[test]
@@ -216,7 +213,7 @@ fn a_visit_ends_with_its_goal() {
     let settings = AgentSettings::default();
     // The robot at the cell `x` leaves the goal.
     let worth = |goal: i32, leaves_at: f64| {
-        let mut strategy = FreshMap::new(&settings);
+        let mut strategy = BestTrip::new(Brier, &settings);
         let mut mapper = map(&[(0.0, &["....."])]);
         let pose = Isometry2::translation(leaves_at, 0.0);
         weigh_from(&pose, &mut strategy, &mapper, &[1.0; 5]);

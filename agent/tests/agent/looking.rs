@@ -1,11 +1,15 @@
 //! Strategies that go where many cells come into view, on maps drawn by hand.
 
 use crate::drawing::{empty, map, reading, seeing, weigh};
-use agent::{FreshMap, InformationGain, Stay, Strategy};
+use agent::{AgentSettings, BestTrip, Brier, InformationGain, Stay, Strategy};
 use interfaces::{Cell, CellReading};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use proptest::prelude::*;
+
+fn fresh_map(settings: &AgentSettings) -> BestTrip<Brier> {
+    BestTrip::new(Brier, settings)
+}
 
 /// Three cells; the middle one is watched for 8 s: free until 2 s, blocked until 6 s, and free again.
 /// All but the left one were last seen 3 s ago.
@@ -16,7 +20,7 @@ fn middle_changes() -> Mapper {
 #[test]
 fn a_look_in_vain_is_a_look() {
     let mut mapper = middle_changes();
-    let (mut fresh, travel) = (FreshMap::new(&seeing(9.0)), [0.0, 1.0, 2.0]);
+    let (mut fresh, travel) = (fresh_map(&seeing(9.0)), [0.0, 1.0, 2.0]);
     let before = weigh(&mut fresh, &mapper, &travel);
     assert!(before[0] > 0.0);
     assert!(matches!(fresh.stay(Cell::new(0, 0)), Stay::Watch(_)));
@@ -26,10 +30,23 @@ fn a_look_in_vain_is_a_look() {
     assert!(after[0] < before[0], "{after:?} {before:?}");
 }
 
+/// A robot that sees a moving thing all the time has nothing to look at there.
+#[test]
+fn what_is_in_view_is_worth_no_look() {
+    let mut mapper = map(&[(0.0, &[".........."])]);
+    for step in 1..60 {
+        let row = if step % 7 < 4 { "...#..    " } else { "......    " };
+        mapper.update(&reading(f64::from(step), &[row])).unwrap();
+    }
+    let travel: Vec<f64> = (0..10).map(f64::from).collect();
+    let weights = weigh(&mut fresh_map(&seeing(2.0)), &mapper, &travel);
+    assert!(weights[..4] == [0.0; 4] && weights[9] > 0.0, "{weights:?}");
+}
+
 #[test]
 fn a_goal_outside_of_the_map_is_no_look() {
     let mapper = middle_changes();
-    let mut fresh = FreshMap::new(&seeing(9.0));
+    let mut fresh = fresh_map(&seeing(9.0));
     let before = weigh(&mut fresh, &mapper, &[0.0; 3]);
     for goal in [Cell::new(-1, 0), Cell::new(0, 7), Cell::new(i32::MAX, i32::MIN)] {
         fresh.stay(goal);
@@ -52,7 +69,7 @@ proptest! {
     ) {
         let mut mapper = empty(6, 4);
         let mut strategies: [Box<dyn Strategy>; 2] =
-            [Box::new(FreshMap::new(&seeing(radius))), Box::new(InformationGain::new(&seeing(radius)))];
+            [Box::new(fresh_map(&seeing(radius))), Box::new(InformationGain::new(&seeing(radius)))];
         let (count, mut time) = (sightings.len(), 0.0_f64);
         for (number, (cells, passed)) in sightings.into_iter().enumerate() {
             time += if number + 1 == count { last + passed } else { passed };

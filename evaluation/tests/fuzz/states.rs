@@ -121,7 +121,7 @@ fn foretell(state: &State) {
     drop(black_box((outlook.worth(), forecast.why_undated())));
     let ends =
         [mapper.frame().origin(), mapper.frame().center(mapper.frame().cell(mapper.frame().len() - 1))];
-    black_box(outlook.stopped(ends, 0.2, |way_m| now_s + way_m));
+    black_box(outlook.stops(ends, 0.2, |way_m| now_s + way_m));
     for door in mapper.doors() {
         black_box((door.openings_per_hour(), door.closed.length_m(), forecast.door_at(door.closed.ends[0])));
     }

@@ -2,6 +2,7 @@
 
 #[path = "../../examples/log_trajectory/alignment.rs"]
 mod alignment;
+mod exploring;
 mod glass;
 mod known_things;
 mod messages;

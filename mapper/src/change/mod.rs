@@ -13,7 +13,8 @@ mod transition_kernel;
 
 pub use cell_map::CellMap;
 pub(crate) use cell_map::Slot;
-pub use chain::{Evidence, Population, Posterior};
+pub(crate) use chain::Fading;
+pub use chain::{Evidence, Population, Posterior, Waiting};
 pub use estimators::{Estimator, EstimatorChoice, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps};
 pub(crate) use exposure::Exposure;
 pub(crate) use gaps::Belief;

@@ -6,14 +6,16 @@ mod change_probability;
 mod credible_interval;
 mod expected_changes;
 mod gamma;
+mod look_worth;
 
 use crate::Mapper;
-use crate::change::{Evidence, Posterior};
+use crate::change::{Evidence, Posterior, Waiting};
 use crate::things::OfCell;
 use blocked_probability::Chain;
 use change_probability::change_probability;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
+pub use look_worth::Undiscovered;
 use std::borrow::Cow;
 
 impl Mapper {
@@ -157,16 +159,33 @@ impl Mapper {
 
     /// What is known of a cell that was mostly found to have changed out of view, and belongs to nothing: it is a thing of one cell.
     fn alone(&self, index: usize) -> Option<Posterior> {
+        let evidence = self.changed_out_of_view(index).filter(Evidence::stands)?;
+        Some(Posterior::new(&evidence, &self.things.objects.population))
+    }
+
+    /// The looks at a cell that was mostly found to have changed out of view.
+    fn changed_out_of_view(&self, index: usize) -> Option<Evidence> {
         let may_be = self.estimator().shares_prior() && self.cells.has_changed(index);
-        let evidence = may_be.then(|| self.cells.evidence(index))?;
-        let is_alone = evidence.is_mostly_after_gap() && evidence.stands();
-        is_alone.then(|| Posterior::new(&evidence, &self.things.objects.population))
+        may_be.then(|| self.cells.evidence(index)).filter(Evidence::is_mostly_after_gap)
     }
 
     /// The probability that what comes and goes at a cell is there, this much time after the last reading; `None` where nothing
     /// does.
     pub fn presence(&self, index: usize, time: f64) -> Option<f64> {
         Some(self.object(index)?.presence(self.time() + time))
+    }
+
+    /// How long a cell stays blocked if it is blocked this much time after the last reading: by the looks at its thing, or at the cell.
+    /// `None` where nothing is known of that: where nothing ever changed, and where people pass.
+    pub fn waiting(&self, index: usize, time: f64) -> Option<Waiting> {
+        let time_s = self.time() + time;
+        if let Some(thing) = self.thing(index) {
+            return Some(thing.waiting(time_s));
+        }
+        let evidence = Some(self.cells.evidence(index)).filter(|seen| seen.changes() > 0 && seen.stands())?;
+        let was_there = self.cells.state(index) == CellState::Blocked;
+        let posterior = Posterior::new(&evidence, &self.things.objects.population);
+        Some(posterior.waiting(true, was_there, time_s - self.cells.last_seen(index)))
     }
 
     /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: its thing, or its chain, and the clocks of its

@@ -3,7 +3,7 @@
 use super::OfCell;
 use super::presence::{Parts, Presence};
 use super::segment::Segment;
-use crate::change::{CellMap, Evidence};
+use crate::change::{CellMap, Evidence, Waiting};
 use crate::clock::{Clock, Dates, Look};
 use interfaces::{CellState, GridFrame};
 use nalgebra::Point2;
@@ -112,6 +112,12 @@ impl Door {
         self.presence.alone().per_hour()
     }
 
+    /// How long it stays closed if it is closed at this time, s. The hours of the day do not count.
+    pub fn waiting(&self, time_s: f64) -> Waiting {
+        let (was_closed, last_s) = self.presence.last_look();
+        self.presence.alone().waiting(true, was_closed, time_s - last_s)
+    }
+
     /// Sets the place of the door, with the number of the hinge and the open leaf if they are known.
     pub(super) fn place(&mut self, closed: Segment, open: Option<(usize, Segment)>, frame: &GridFrame) {
         self.closed = closed;
@@ -145,7 +151,8 @@ impl Door {
         let counts =
             self.parts.counts(cell).filter(|counts| counts.iter().all(|counts| !counts.is_empty()))?;
         let shares = counts.map(|counts| counts.share(0.0, FREE_LOOKS));
-        Some(OfCell { presence: &self.presence, population: None, clock: Some(&self.clock), shares })
+        let (presence, clock, cells) = (&self.presence, Some(&self.clock), self.parts.iter().len());
+        Some(OfCell { presence, number: self.id, cells, population: None, clock, shares })
     }
 
     /// Learns from the open reading.

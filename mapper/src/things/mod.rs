@@ -65,6 +65,11 @@ impl Things {
         self.doors.iter().find_map(|door| door.of_cell(cell as u32))
     }
 
+    /// The number of things.
+    pub(crate) fn count(&self) -> usize {
+        self.doors.len() + self.objects.count()
+    }
+
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.
     pub(crate) fn update(&mut self, cells: &CellMap, is_doubted: impl Fn(usize) -> bool, dates: Dates) {
         let (frame, now_s) = (cells.frame(), cells.time());

@@ -185,9 +185,16 @@ impl Objects {
 
     /// What the object of a cell says of it; `None` if it belongs to none.
     pub(super) fn of_cell(&self, cell: u32) -> Option<OfCell<'_>> {
-        let object = self.objects.get(self.of_cell.get(&cell)?).filter(|object| object.is_thing)?;
+        let number = *self.of_cell.get(&cell)?;
+        let object = self.objects.get(&number).filter(|object| object.is_thing)?;
         let (presence, population) = (&object.presence, Some(&self.population));
-        Some(OfCell { presence, population, clock: None, shares: object.shares(cell)? })
+        let (shares, cells) = (object.shares(cell)?, object.cells().len());
+        Some(OfCell { presence, number, cells, population, clock: None, shares })
+    }
+
+    /// The number of things.
+    pub(super) fn count(&self) -> usize {
+        self.objects.values().filter(|object| object.is_thing).count()
     }
 
     pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {

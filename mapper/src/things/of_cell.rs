@@ -1,7 +1,7 @@
 //! What a thing says of one of its cells.
 
 use super::presence::Presence;
-use crate::change::{Population, Posterior, RateDistribution};
+use crate::change::{Population, Posterior, RateDistribution, Waiting};
 use crate::clock::{Clock, Dates};
 use crate::tiles::HALF_HOURS;
 
@@ -12,6 +12,9 @@ const CYCLES: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfCell<'a> {
     pub(crate) presence: &'a Presence,
+    /// The number of the thing among doors, or among objects, and of its cells.
+    pub(crate) number: u32,
+    pub(crate) cells: usize,
     /// The population of the map; `None` for a door.
     pub(super) population: Option<&'a Population>,
     /// The clock of a door; `None` of an object.
@@ -24,6 +27,12 @@ impl<'a> OfCell<'a> {
     /// What is known of the thing.
     pub(crate) fn posterior(&self) -> &'a Posterior {
         self.population.map_or_else(|| self.presence.alone(), |map| self.presence.posterior(map))
+    }
+
+    /// What a look at the thing is worth now (`Fading::look_worth`), at a time, s.
+    pub(crate) fn look_worth(&self, time_s: f64) -> f64 {
+        let (was_there, last_s) = self.presence.last_look();
+        self.posterior().fading().look_worth(was_there, (time_s - last_s).max(0.0))
     }
 
     /// Whether a look at the cell that found it blocked (1) or free (0), at a time, s, is older than the last look at the thing, or says
@@ -42,6 +51,13 @@ impl<'a> OfCell<'a> {
     /// The probability that the cell is blocked at a time, s.
     pub(crate) fn blocked_probability(&self, time_s: f64) -> f64 {
         self.mix(self.presence(time_s))
+    }
+
+    /// How long the cell stays blocked if it is blocked at a time, s.
+    pub(crate) fn waiting(&self, time_s: f64) -> Waiting {
+        let [away, there] = self.shares;
+        let (was_there, last_s) = self.presence.last_look();
+        self.posterior().waiting(there >= away, was_there, time_s - last_s)
     }
 
     /// What the clock of a door makes of this probability at a time, s.
@@ -83,7 +99,14 @@ mod tests {
         let presence = Presence::new(false, 0.0, evidence, false);
         let clock = Clock::default();
         for (shares, per_opening) in [([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([0.0, 0.0], 2.0)] {
-            let of_cell = OfCell { presence: &presence, population: None, clock: Some(&clock), shares };
+            let of_cell = OfCell {
+                presence: &presence,
+                number: 0,
+                cells: 1,
+                population: None,
+                clock: Some(&clock),
+                shares,
+            };
             let per_hour = 3600.0 * of_cell.rate_prior().unwrap().mean();
             assert!((per_hour / per_opening - 10.0).abs() < 0.6, "{shares:?}: {per_hour} per hour");
             assert_eq!(OfCell { clock: None, ..of_cell }.rate_prior(), None);

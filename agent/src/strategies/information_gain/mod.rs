@@ -8,13 +8,13 @@ mod view_reliability;
 use super::{Pick, Stay, Strategy};
 use crate::settings::AgentSettings;
 use crate::situation::Situation;
+use crate::travel::travel_past_obstacles;
 use crate::visibility::{Regions, Visibility};
 use change::Change;
 use clusters::{Clusters, Occlusion, Position};
 use interfaces::{Cell, CellState, Values, value};
 use mapper::Mapper;
 use rates::{Gains, RATES, Rates, WATCHES};
-use std::collections::VecDeque;
 use view_reliability::ViewReliability;
 
 /// The maximum duration of an observation before the next decision, in the time unit of the readings. New
@@ -120,13 +120,13 @@ impl InformationGain {
         gains: &RegionGains,
         visible_share: impl Fn(usize) -> f64,
     ) -> [f32; WATCHES.len()] {
-        let view = self.visibility.seen_from(region);
+        let view: Vec<usize> = self.visibility.seen_from(region).collect();
         let mut sums = [0.0; WATCHES.len()];
-        let mut add = |seen: u32, share: f64| {
-            let factor = (share * visible_share(seen as usize)) as f32;
-            sums.iter_mut().zip(&gains[seen as usize]).for_each(|(sum, gain)| *sum += factor * gain);
+        let mut add = |seen: usize, share: f64| {
+            let factor = (share * visible_share(seen)) as f32;
+            sums.iter_mut().zip(&gains[seen]).for_each(|(sum, gain)| *sum += factor * gain);
         };
-        match self.reliability.share(region, view) {
+        match self.reliability.share(region, view.len()) {
             Some(shares) => view.iter().zip(shares).for_each(|(&seen, share)| add(seen, share)),
             None => view.iter().for_each(|&seen| add(seen, 1.0)),
         }
@@ -145,7 +145,7 @@ impl Strategy for InformationGain {
         self.reliability.end(mapper, &mut self.visibility, &regions, situation.cell(), false);
         let clusters = Clusters::new(mapper);
         let gains = self.gains(mapper, &clusters, &regions);
-        let travel = travel_times(situation);
+        let travel = travel_past_obstacles(situation);
         // Where things are as large as a cell, a robot on a path blocks the path, and a thing hides the cells behind it.
         // Where things cover many cells, most of the free space is on some path, and the robot can be passed.
         let is_in_the_way = regions.are_cells();
@@ -200,39 +200,4 @@ impl Strategy for InformationGain {
         self.reliability.begin(self.visibility.seen_from(regions.of(goal)), watched, goal, watch);
         Stay::Watch(watch)
     }
-}
-
-// The travel time to each cell, also past obstacles that may have moved away.
-
-/// The additional time to pass a cell that was blocked when last seen, and may still be blocked.
-const MAY_BE_CLOSED: f64 = 10.0;
-
-/// The travel time from the robot to each cell; ∞ where no path is known.
-///
-/// The planner knows no path past an obstacle that stood in a door when it was last seen, and a robot that never
-/// goes there never sees the door open. Paths therefore also lead through cells that changed, are blocked in the
-/// map and are out of view; from there on they go from cell to cell, at one meter per unit of time.
-fn travel_times(situation: &Situation) -> Vec<f64> {
-    let (mapper, frame) = (situation.mapper, situation.mapper.frame());
-    let states = mapper.states().cells();
-    let mut times: Vec<f64> = (0..frame.len()).map(|cell| situation.travel_to(cell)).collect();
-    let mut is_passable: Vec<bool> = states.iter().map(|state| *state == CellState::Free).collect();
-    let mut open = VecDeque::new();
-    let may_be_gone = |&cell: &usize| states[cell] == CellState::Blocked && !mapper.is_in_view(cell);
-    for cell in mapper.changed().filter(may_be_gone) {
-        is_passable[cell] = true;
-        if times[cell] == f64::INFINITY {
-            open.extend(frame.beside(cell).filter(|&near| times[near] < f64::INFINITY));
-        }
-    }
-    while let Some(cell) = open.pop_front() {
-        for near in frame.beside(cell) {
-            if is_passable[near] && times[near] == f64::INFINITY {
-                let closed = if states[near] == CellState::Blocked { MAY_BE_CLOSED } else { 0.0 };
-                times[near] = times[cell] + frame.resolution_m() + closed;
-                open.push_back(near);
-            }
-        }
-    }
-    times
 }

@@ -39,8 +39,14 @@ pub(super) fn watched(mapper: &Mapper, regions: &Regions, region: usize) -> f64 
 impl ViewReliability {
     /// Begins the visit of a goal, the index of a cell from which the regions in `view` can be seen. `watched` is the time that each
     /// region was observed before.
-    pub(super) fn begin(&mut self, view: &[u32], watched: &[f64], goal: usize, duration: f64) {
-        let watched = view.iter().map(|&seen| watched[seen as usize]).collect();
+    pub(super) fn begin(
+        &mut self,
+        view: impl Iterator<Item = usize>,
+        watched: &[f64],
+        goal: usize,
+        duration: f64,
+    ) {
+        let watched = view.map(|seen| watched[seen]).collect();
         self.visit = Some(Visit { goal, duration, watched });
     }
 
@@ -60,7 +66,7 @@ impl ViewReliability {
         }
         let Some(Visit { goal, duration, watched: before }) = self.visit.take() else { return };
         let region = regions.of(goal);
-        let view = visibility.seen_from(region);
+        let view: Vec<usize> = visibility.seen_from(region).collect();
         // The nearest cell of a region is at its border, and the robot stops shortly before its goal: in a fine grid, it
         // mostly stops in another region, with the same view.
         let is_there = regions.are_near(robot, mapper.frame().cell(goal));
@@ -72,20 +78,19 @@ impl ViewReliability {
         if observations.len() != view.len() {
             *observations = vec![[0.0; 2]; view.len()];
         }
-        for ((observation, before), &seen) in observations.iter_mut().zip(before).zip(view) {
+        for ((observation, before), seen) in observations.iter_mut().zip(before).zip(view) {
             observation[0] += duration as f32;
             if is_there {
-                observation[1] +=
-                    (watched(mapper, regions, seen as usize) - before).clamp(0.0, duration) as f32;
+                observation[1] += (watched(mapper, regions, seen) - before).clamp(0.0, duration) as f32;
             }
         }
     }
 
-    /// For each region of the view, in order, the share of the time for which it is seen from a region. `None` for
-    /// a region that was never visited: then the whole view counts as seen.
-    pub(super) fn share(&self, region: usize, view: &[u32]) -> Option<impl Iterator<Item = f64>> {
+    /// For each region of the view, in order, the share of the time for which it is seen from a region; the view has `seen` regions.
+    /// `None` for a region that was never visited: then the whole view counts as seen.
+    pub(super) fn share(&self, region: usize, seen: usize) -> Option<impl Iterator<Item = f64>> {
         let observations = &self.observations[region];
         let share = |[due, seen]: &[f32; 2]| (f64::from(*seen) + TRUST) / (f64::from(*due) + TRUST);
-        (observations.len() == view.len() && !observations.is_empty()).then(|| observations.iter().map(share))
+        (observations.len() == seen && !observations.is_empty()).then(|| observations.iter().map(share))
     }
 }

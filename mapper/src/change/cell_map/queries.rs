@@ -69,6 +69,12 @@ impl CellMap {
         self.times.at(self.last_reading(index))
     }
 
+    /// The time from the first observation of a cell to the last one; 0 for a cell that was never observed.
+    pub(crate) fn known_for(&self, index: usize) -> f64 {
+        let record = self.records.at(self.records.place(index));
+        if record.is_known() { self.last_seen(index) - self.times.at(record.first) } else { 0.0 }
+    }
+
     pub(crate) fn was_ever_seen(&self, index: usize) -> bool {
         self.last_reading(index) != super::NEVER
     }

@@ -37,7 +37,7 @@ pub(super) fn add_gaps(sums: &mut Chains, count: u32, before: bool, after: bool,
 }
 
 /// The probability that a chain is in the state `after` this time after it was in the state `before`.
-fn probability_of([come, go]: [f64; 2], before: bool, after: bool, elapsed_s: f64) -> f64 {
+pub(super) fn probability_of([come, go]: [f64; 2], before: bool, after: bool, elapsed_s: f64) -> f64 {
     let all = come + go;
     let leave = if before { go } else { come };
     let changed = leave / all * -libm::expm1(-all * elapsed_s);

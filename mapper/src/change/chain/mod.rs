@@ -1,7 +1,8 @@
 //! One model of change: a thing is there or away, as a two-state chain in continuous time whose rates are unknown.
 //!
 //! [`Evidence`] is what the looks at a thing say, in view and over gaps; the [`Population`] is what the other things of the map
-//! and shipped knowledge say; both give a [`Posterior`] over a fixed grid of chains: mean stay away × mean stay there.
+//! and shipped knowledge say; both give a [`Posterior`] over a fixed grid of chains: mean stay away × mean stay there. From it follows
+//! how long a state still lasts, and whether waiting for its end is worth it: [`Waiting`].
 
 mod evidence;
 mod kernel;
@@ -9,10 +10,13 @@ mod population;
 mod posterior;
 #[cfg(test)]
 mod tests;
+mod waiting;
 
 pub use evidence::Evidence;
 pub use population::Population;
+pub(crate) use posterior::Fading;
 pub use posterior::Posterior;
+pub use waiting::Waiting;
 
 /// The number of mean stays along both axes of the grid, the shortest one, s, and the ratio of one to the next: 3 s to 3 weeks.
 /// A ratio above 1.5 would show in the error of rates.

@@ -12,6 +12,10 @@ const NOTHING: f64 = -40.0;
 
 const HOUR_S: f64 = 3600.0;
 
+/// The number of times at which what is left of a look is integrated, and the longest time, s: longer than any stay.
+const TIMES: usize = 24;
+const LONGEST_S: f64 = 1e7;
+
 /// What a posterior asks of a chain.
 struct Chain {
     /// The sum of its rates, 1/s, its share of the time there, and the logarithm of its cycle rate.
@@ -35,14 +39,17 @@ static CHAINS: LazyLock<Vec<Chain>> = LazyLock::new(|| {
     chains().map(of).collect()
 });
 
+/// How looks at a thing fade. For the chains whose rates have about the same sum: that sum, 1/s, their probability, and that times
+/// their share of the time there.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fading(Vec<[f64; 3]>);
+
 /// What is known of the chain of a thing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posterior {
     /// The probability of each chain; their sum is 1.
     pub(super) chains: Vec<f32>,
-    /// For the chains whose rates have about the same sum: that sum, 1/s, their probability, and that times their share of the time
-    /// there.
-    fading: Vec<[f64; 3]>,
+    fading: Fading,
     /// The probability of each bin of the cycle rate.
     cycle_rates: Vec<f64>,
     mean_log_rate: f64,
@@ -67,22 +74,23 @@ impl Posterior {
         fading.retain(|[_, weight, _]| *weight > 1e-9);
         fading.iter_mut().for_each(|[all, weight, _]| *all /= *weight);
         let chains = weights.into_iter().map(|weight| weight as f32).collect();
-        Self { chains, fading, cycle_rates, mean_log_rate }
+        Self { chains, fading: Fading(fading), cycle_rates, mean_log_rate }
+    }
+
+    /// How looks fade.
+    pub(crate) fn fading(&self) -> &Fading {
+        &self.fading
     }
 
     /// The probability that the thing is there, this time after a look, s.
     pub fn probability(&self, was_there: bool, elapsed_s: f64) -> f64 {
-        let was_there = f64::from(u8::from(was_there));
-        self.fading
-            .iter()
-            .map(|[all, weight, there]| there + (was_there * weight - there) * libm::exp(-all * elapsed_s))
-            .sum()
+        self.fading.probability(was_there, elapsed_s)
     }
 
     /// The share of the time that the thing is there, and the rate at which a look at it fades, 1/s: the sum of both rates.
     pub(crate) fn share_and_fading(&self) -> (f64, f64) {
-        let sum = |of: fn(&[f64; 3]) -> f64| self.fading.iter().map(of).sum::<f64>();
-        (sum(|[_, _, there]| *there), libm::exp(sum(|[all, weight, _]| weight * libm::log(*all))))
+        let rate = self.fading.sum(|[all, weight, _]| weight * libm::log(*all));
+        (self.fading.share(), libm::exp(rate))
     }
 
     /// The cycle rate, 1/s: the median, about.
@@ -110,6 +118,54 @@ impl Posterior {
             libm::exp(lowest() + BINS as f64 * WIDTH)
         };
         (end(0.5 - 0.5 * mass), end(0.5 + 0.5 * mass))
+    }
+}
+
+impl Fading {
+    fn sum(&self, of: impl Fn(&[f64; 3]) -> f64) -> f64 {
+        self.0.iter().map(of).sum()
+    }
+
+    /// The share of the time that the thing is there.
+    pub(crate) fn share(&self) -> f64 {
+        self.sum(|[_, _, there]| *there)
+    }
+
+    pub(super) fn probability(&self, was_there: bool, elapsed_s: f64) -> f64 {
+        let was_there = f64::from(u8::from(was_there));
+        self.sum(|[all, weight, there]| there + (was_there * weight - there) * libm::exp(-all * elapsed_s))
+    }
+
+    /// What a look at the thing is worth, this time after the last look, s: how much it takes away from the Brier score of the
+    /// predicted state, integrated until the next look, which is expected to come as late as the last one was. A look takes away the
+    /// variance p (1 − p) of the state, and comes back into it as ρ², the square of what is left of a look after a time.
+    pub(crate) fn look_worth(&self, was_there: bool, elapsed_s: f64) -> f64 {
+        let there = self.probability(was_there, elapsed_s);
+        there * (1.0 - there) * self.remembered_s(elapsed_s)
+    }
+
+    /// ∫ρ² until a time, s: ρ is the mean of e^(−sτ) over the sums s of the rates.
+    pub(crate) fn remembered_s(&self, until_s: f64) -> f64 {
+        let until_s = until_s.min(LONGEST_S);
+        let part = |number: usize| {
+            // Denser at first, where ρ falls.
+            let at = (number as f64 + 0.5) / TIMES as f64;
+            let left = self.sum(|[all, weight, _]| weight * libm::exp(-all * until_s * at * at * at));
+            3.0 * at * at * left * left
+        };
+        until_s / TIMES as f64 * (0..TIMES).map(part).sum::<f64>()
+    }
+
+    /// What is known if the thing stayed away in view for this time, s, and the probability of that.
+    pub(crate) fn after_silence(&self, silent_s: f64) -> (Self, f64) {
+        let stays = |[all, weight, there]: &[f64; 3]| libm::exp(-all * there / weight * silent_s);
+        let silent = self.sum(|chains| chains[1] * stays(chains));
+        let after = |chains: &[f64; 3]| {
+            let [all, weight, there] = *chains;
+            let more = stays(chains) / silent;
+            [all, weight * more, there * more]
+        };
+        if silent > 1e-12 { (Self(self.0.iter().map(after).collect()), silent) } else { (self.clone(), 0.0) }
     }
 }
 

@@ -174,3 +174,48 @@ fn a_cell_that_flickers_is_explained_by_its_thing_and_traffic_is_not() {
         [true, true, false, false]
     );
 }
+
+/// By looking at what the prediction loses until the next look, with and without a look now.
+#[test]
+fn a_look_is_worth_what_it_takes_away_from_the_brier_score() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    for between_s in [0.0, 50.0, 890.0] {
+        let times_s = times_s(between_s, 3600.0);
+        let looks = looks(stays_s(&mut rng), &times_s, &mut rng);
+        let posterior = Posterior::new(&evidence(&times_s, &looks), &Population::default());
+        for (was_there, elapsed_s) in [(false, 30.0), (true, 30.0), (false, 600.0), (true, 7200.0)] {
+            let there = posterior.probability(was_there, elapsed_s);
+            let (steps, mut fall) = (20_000, 0.0);
+            for step in 0..steps {
+                let later_s = elapsed_s * (f64::from(step) + 0.5) / f64::from(steps);
+                let [seen_there, seen_away] = [true, false].map(|seen| posterior.probability(seen, later_s));
+                let variance = |p: f64| p * (1.0 - p);
+                let without = variance(there * seen_there + (1.0 - there) * seen_away);
+                let with = there * variance(seen_there) + (1.0 - there) * variance(seen_away);
+                fall += (without - with) * elapsed_s / f64::from(steps);
+            }
+            let found = posterior.fading().look_worth(was_there, elapsed_s);
+            assert!(
+                (found / fall - 1.0).abs() < 0.03,
+                "{found} against {fall}, {between_s} s, {elapsed_s} s"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_silent_for_long_changes_rarely() {
+    let posterior = Posterior::new(&Evidence::default(), &Population::default());
+    let mut before = (1.0, posterior.fading().probability(false, 600.0));
+    for silent_s in [0.0, 60.0, 600.0, 3600.0, 86_400.0, 1e6] {
+        let (fading, probability) = posterior.fading().after_silence(silent_s);
+        let changed = fading.probability(false, 600.0);
+        assert!(
+            probability <= before.0 && changed <= before.1 + 1e-9,
+            "{silent_s} s: {probability} {changed}"
+        );
+        before = (probability, changed);
+    }
+    assert!(before.0 < 0.1 && before.1 < 0.01, "{before:?}");
+    assert_eq!(posterior.fading().after_silence(1e12).1, 0.0);
+}
