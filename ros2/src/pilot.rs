@@ -53,7 +53,7 @@ impl LivePilot {
 
     /// Takes the new state of the goal that Nav2 has.
     pub(crate) fn navigated(&mut self, news: link::Navigation) {
-        let driver = self.explorer.as_mut().map(Autonomous::driver_mut);
+        let driver = self.explorer.as_mut().map(|explorer| &mut explorer.driver);
         if let Some(navigation) = driver.and_then(|driver| driver.navigation.as_mut()) {
             navigation.navigated(news);
         }
@@ -68,7 +68,7 @@ impl Pilot for LivePilot {
             None => Order::None,
             // The node stops the robot once. Then it leaves the robot to others.
             Some(explorer) if self.is_paused => {
-                explorer.driver_mut().navigation.as_mut().map_or(Order::None, Navigation::withdraw)
+                explorer.driver.navigation.as_mut().map_or(Order::None, Navigation::withdraw)
             }
             Some(explorer) => explorer.command(belief, features, mapper),
         }

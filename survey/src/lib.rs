@@ -35,7 +35,7 @@ mod upright;
 pub use change_log::ChangeLog;
 pub use forecast::{Forecast, NEAR_M};
 pub use masks::{MASKS, masks, masks_ahead, permanent};
-pub use outlook::Outlook;
+pub use outlook::{Obstacle, Outlook, Stop};
 pub use passes::{FoundPoses, Replay, Stage};
 pub use places::{
     Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, Trend, is_line,

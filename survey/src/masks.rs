@@ -25,7 +25,7 @@ const PROBABLY: f64 = 0.5;
 /// The value of a cell that must not be entered.
 const KEEP_OUT: u8 = 100;
 /// A cell that changes is permanent in a state if it is in this state for at least this share of the time.
-const PERMANENT: f64 = 0.9;
+pub(crate) const PERMANENT: f64 = 0.9;
 
 /// The value of the speed mask for the number of times per second that something comes into the way: 0 up to one in 40 passing
 /// robots, 80 from one in 10 on, in proportion to the logarithm of this share in between.

@@ -1,11 +1,14 @@
 //! What a map says of other times: P(blocked), doors, for how long a look counts.
 
+use crate::masks::{PERMANENT, share_blocked};
 use interfaces::{Cell, CellState, Grid, GridFrame};
-use mapper::{Calendar, Clock, Door, Mapper};
+use mapper::{Calendar, Clock, Mapper, Waiting};
 use nalgebra::{Point2, Vector2};
 
 /// Cells whose centers are at most this far from the closed leaf of a door are blocked by it, in cells.
 const LEAF: f64 = 2.0;
+/// Cells that are no part of a door are the same obstacle if they are at most this far apart, m.
+const SAME_M: f64 = 1.0;
 
 /// A map, and how its times relate to local civil time. Times are those of the calendar, s.
 #[derive(Clone, Copy, Debug)]
@@ -74,35 +77,113 @@ impl<'a> Outlook<'a> {
         grid
     }
 
-    /// The probability that a body with this radius, m, is stopped on its straight way between two points, m: that of the cell on
-    /// its way that is most probably blocked, if it is there at this time, s. Doors are blocked when they are closed, as their own
-    /// clocks say. `None` if no cell of the way was ever seen.
-    pub fn stopped(
+    /// What can stop a body with this radius, m, on its straight way between two points, m, in the order in which the body comes to it:
+    /// the probability that it does is that of the cell on its way that is most probably blocked, if it is there at this time, s. `None`
+    /// if no cell of the way was ever seen.
+    pub fn stops(
         &self,
         [from, to]: [Point2<f64>; 2],
         radius_m: f64,
         time_s: impl Fn(f64) -> f64,
-    ) -> Option<f64> {
+    ) -> Option<Vec<Stop>> {
         let (frame, way) = (self.mapper.frame(), to - from);
         let (cell_m, length_m) = (frame.resolution_m(), way.norm());
         let (steps, reach) = ((length_m / cell_m).ceil().max(1.0), (radius_m / cell_m).round() as i32);
-        let doors = self.mapper.doors();
-        let mut largest: Option<f64> = None;
+        let mut found: Option<Vec<Stop>> = None;
         let margin_m = (f64::from(reach) + LEAF + 1.0) * cell_m;
         let [first, last] = part_near(frame, margin_m, from, way)?;
+        let mut before: Option<Cell> = None;
         for step in (first * steps).floor() as usize..=(last * steps).ceil() as usize {
-            let share = step as f64 / steps;
-            let (at, time_s) = (from + way * share, time_s(share * length_m));
-            for cell in frame.cell_at(&at).disc(reach) {
-                let is_leaf = |door: &&Door| door.closed.distance_m(&frame.center(cell)) <= LEAF * cell_m;
-                let found = match doors.iter().find(is_leaf) {
-                    Some(door) => Some(1.0 - door.clock.probability(time_s, self.calendar)),
-                    None => self.blocked(cell, time_s),
-                };
-                largest = largest.into_iter().chain(found).reduce(f64::max);
+            let way_m = step as f64 / steps * length_m;
+            let (at, time_s) = (from + way * (step as f64 / steps), time_s(way_m));
+            let center = frame.cell_at(&at);
+            let is_new = |cell: &Cell| before.is_none_or(|before| !before.is_within(*cell, reach));
+            for cell in center.disc(reach).filter(is_new) {
+                let Some((obstacle, blocked)) = self.obstacle(cell, time_s) else { continue };
+                let stops = found.get_or_insert_default();
+                // The body leaves a cell at most its diameter later.
+                let ways_m = [way_m, (way_m + 2.0 * radius_m).min(length_m)];
+                let stop = Stop { obstacle, at: frame.center(cell), blocked, ways_m, time_s };
+                match stops.iter_mut().rev().find(|known| known.continues(&stop)) {
+                    _ if blocked <= 0.0 => {}
+                    Some(known) => known.join(stop),
+                    None => stops.push(stop),
+                }
             }
+            before = Some(center);
         }
-        largest
+        found
+    }
+
+    /// What can block a cell, and the probability that it does at a time, s; `None` for a cell that was never seen. Doors are blocked when
+    /// they are closed, as their own clocks say.
+    pub fn obstacle(&self, cell: Cell, time_s: f64) -> Option<(Obstacle, f64)> {
+        let frame = self.mapper.frame();
+        let (center, leaf_m) = (frame.center(cell), LEAF * frame.resolution_m());
+        if let Some(door) = self.mapper.doors().iter().find(|door| door.closed.distance_m(&center) <= leaf_m)
+        {
+            return Some((Obstacle::Door(door.id), 1.0 - door.clock.probability(time_s, self.calendar)));
+        }
+        let (index, blocked) = (frame.index(cell)?, self.blocked(cell, time_s)?);
+        let is_wall = self.mapper.map_changes(index) == 0 || share_blocked(self.mapper, index) >= PERMANENT;
+        Some((if is_wall { Obstacle::Wall } else { Obstacle::Cells }, blocked))
+    }
+
+    /// How long an obstacle still blocks the way, if it does when the body comes to it; `None` for a wall, and where nothing is known of
+    /// that. A door is one that opens and closes alike at all hours.
+    pub fn waiting(&self, stop: &Stop) -> Option<Waiting> {
+        if let Obstacle::Door(id) = stop.obstacle {
+            let door = self.mapper.doors().iter().find(|door| door.id == id)?;
+            return Some(door.waiting(stop.time_s - self.mapper.epoch_s()));
+        }
+        let index = self.mapper.frame().index(self.mapper.frame().cell_at(&stop.at));
+        let index = index.filter(|_| stop.obstacle == Obstacle::Cells)?;
+        self.mapper.waiting(index, (stop.time_s - self.now_s()).max(0.0))
+    }
+}
+
+/// What can stop a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Obstacle {
+    /// What never changed, or is there nearly all the time.
+    Wall,
+    /// The door with this number.
+    Door(u32),
+    /// Other cells that change: an object that comes and goes, or people.
+    Cells,
+}
+
+/// An obstacle on a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// What it is.
+    pub obstacle: Obstacle,
+    /// The center of its cell on the way that is most probably blocked, m.
+    pub at: Point2<f64>,
+    /// The probability that this cell is blocked when the body comes to it.
+    pub blocked: f64,
+    /// The distances along the way at which the body meets the obstacle first and last, m.
+    pub ways_m: [f64; 2],
+    /// The time at which the body comes to the cell, s.
+    pub time_s: f64,
+}
+
+impl Stop {
+    /// Whether both are the same obstacle.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let is_near = (self.at - other.at).norm() <= SAME_M;
+        self.obstacle == other.obstacle && (is_near || matches!(self.obstacle, Obstacle::Door(_)))
+    }
+
+    /// Whether another one, farther along the way, is the same obstacle, which the way has not left in between.
+    pub fn continues(&self, later: &Self) -> bool {
+        later.ways_m[0] <= self.ways_m[1] + SAME_M && self.is_same(later)
+    }
+
+    /// Adds what is known of the same obstacle farther along the way.
+    pub fn join(&mut self, later: Self) {
+        let ways_m = [self.ways_m[0], self.ways_m[1].max(later.ways_m[1])];
+        *self = Self { ways_m, ..if later.blocked > self.blocked { later } else { *self } };
     }
 }
 
@@ -148,8 +229,9 @@ mod tests {
                 asked_m.borrow_mut().push(way_m);
                 outlook.now_s()
             };
-            let found = outlook.stopped([Point2::new(from_m, y_m), Point2::new(to_m, y_m)], 0.2, time_s);
-            (found, asked_m.into_inner())
+            let found = outlook.stops([Point2::new(from_m, y_m), Point2::new(to_m, y_m)], 0.2, time_s);
+            let blocked = |found: Vec<Stop>| found.iter().fold(0.0, |most, stop| stop.blocked.max(most));
+            (found.map(blocked), asked_m.into_inner())
         };
         for y_m in [2.45, 3.05, 3.3] {
             let (near, _) = at(y_m, [0.0, 7.0]);

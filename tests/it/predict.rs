@@ -77,7 +77,9 @@ fn hours_routes_and_graphs_are_predicted() {
     let [through, first, around] = [4, 5, 6].map(|edge| graph["features"][edge]["properties"].clone());
     let open = |edge: &Value| edge["metadata"]["open_probability"].as_f64().unwrap();
     assert!(open(&through) < 0.2 && open(&around) == 1.0, "{through}, {around}");
-    assert!((through["cost"].as_f64().unwrap() - 1.5 / open(&through)).abs() < 1e-9);
+    // No way round, and how long it lasts is not known.
+    let expected_m = 1.5 + 1000.0 * (1.0 - open(&through));
+    assert!((through["cost"].as_f64().unwrap() - expected_m).abs() < 1e-6, "{through}");
     assert_eq!((&first["cost"], &around["cost"]), (&json!(1.0), &json!(1.5)));
     assert_eq!((&around["overridable"], &around["metadata"]["aisle"]), (&json!(false), &json!(14)));
     let after_s =
@@ -164,6 +166,121 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
     let refused = run.refuses("a.state --door 0 --door 7");
     let says = ["error: --door 7: there is no such door; known are 0 at ", "are those of places: --place"];
     assert!(says.iter().all(|says| refused.contains(says)), "{refused}");
+}
+
+/// Two rooms of 5 m × 8 m: a door in the wall between them (x = 5 m, y from 3.5 to 4.5 m), and a passage (y from 7 to 8 m).
+const WALLS: [[f64; 4]; 9] = [
+    [0.0, 0.0, 10.0, 0.0],
+    [10.0, 0.0, 10.0, 8.0],
+    [10.0, 8.0, 0.0, 8.0],
+    [0.0, 8.0, 0.0, 0.0],
+    [5.0, 0.0, 5.0, 3.5],
+    [5.0, 4.5, 5.0, 7.0],
+    [2.0, 1.0, 3.0, 1.0],
+    [7.0, 1.0, 7.0, 2.0],
+    [9.0, 5.0, 9.5, 5.5],
+];
+const DOOR: [f64; 4] = [5.0, 3.5, 5.0, 4.5];
+
+/// The range along a heading, m.
+fn range_m([x, y, heading_rad]: [f64; 3], is_closed: bool) -> f64 {
+    let (dy, dx) = heading_rad.sin_cos();
+    let hit = |[x1, y1, x2, y2]: &[f64; 4]| {
+        let (along, across) = ([x2 - x1, y2 - y1], dx * (y2 - y1) - dy * (x2 - x1));
+        let ahead = ((x1 - x) * along[1] - (y1 - y) * along[0]) / across;
+        let beside = ((x1 - x) * dy - (y1 - y) * dx) / across;
+        (ahead > 0.0 && (0.0..=1.0).contains(&beside)).then_some(ahead)
+    };
+    WALLS.iter().chain([&DOOR].into_iter().filter(|_| is_closed)).filter_map(hit).fold(30.0, f64::min)
+}
+
+/// The log of a robot that goes around through the passage and back, and then watches the door for half an hour: it stays closed, and
+/// open, for a minute on average, and is closed at the end. The map begins at (2, 4) m.
+fn two_rooms() -> String {
+    let (mut text, mut time_s, mut pose) = (String::new(), 1.7e9, [2.0_f64, 4.0, 0.0]);
+    // The quantiles of an exponential distribution, in an order without a pattern.
+    let stay_s = |stay: u32| -60.0 * (f64::from(stay * 7 % 29) / 29.0 + 0.5 / 29.0).ln();
+    let (mut stay, mut until_s) = (0, time_s + 60.0);
+    let mut scan = |pose: [f64; 3], step_s: f64| {
+        time_s += step_s;
+        if time_s > until_s {
+            (stay, until_s) = (stay + 1, until_s + stay_s(stay));
+        }
+        let is_closed = stay % 2 == 1;
+        let ranges: String = (0..180)
+            .map(|beam| range_m([pose[0], pose[1], pose[2] + f64::from(beam - 90).to_radians()], is_closed))
+            .map(|range_m| format!("{range_m:.3} "))
+            .collect();
+        let at = format!("{:.3} {:.3} {:.4}", pose[0] - 2.0, pose[1] - 4.0, pose[2]);
+        text += &format!("ODOM {at} 0 0 0 {time_s:.2} h 0\nFLASER 180 {ranges}{at} {at} {time_s:.2} h 0\n");
+        is_closed
+    };
+    for [x, y] in [[2.0_f64, 7.5], [8.0, 7.5], [8.0, 2.5], [8.0, 7.5], [2.0, 7.5], [2.0, 4.0], [3.0, 4.0]] {
+        let (ahead, length_m) = ((y - pose[1]).atan2(x - pose[0]), (y - pose[1]).hypot(x - pose[0]));
+        let turn_rad =
+            (ahead - pose[2] + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+        let turns = (turn_rad.abs() / 0.1).ceil().max(1.0);
+        for _ in 0..turns as u32 {
+            pose[2] += turn_rad / turns;
+            scan(pose, 0.2);
+        }
+        let steps = (length_m / 0.1).ceil();
+        for _ in 0..steps as u32 {
+            (pose[0], pose[1]) =
+                (pose[0] + length_m / steps * ahead.cos(), pose[1] + length_m / steps * ahead.sin());
+            scan(pose, 0.2);
+        }
+    }
+    for _ in 0..1500 {
+        scan(pose, 1.0);
+    }
+    while !scan(pose, 1.0) {}
+    for _ in 0..8 {
+        scan(pose, 1.0);
+    }
+    text
+}
+
+/// In front of a closed door, a robot for which the way round is short goes round, one for which it is long waits, and one that does not
+/// fit through the passage has no other choice.
+#[test]
+fn a_route_through_a_closed_door_waits_or_goes_round() {
+    let run = Run::of("map_log");
+    run.write("two.log", &two_rooms());
+    run.goes_well(&format!("two.log {SAVED}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let run = run.with("predict");
+    for (name, points) in [
+        ("through.csv", "1 0\n6 0\n"),
+        ("inside.csv", "3 0\n6 0\n"),
+        ("wall.csv", "1 0\n1 -5\n"),
+        ("free.csv", "0.5 -1\n0.5 1.5\n"),
+        ("twice.csv", "1 0\n6 0\n1 0\n"),
+    ] {
+        run.write(name, points);
+    }
+    run.goes_well("a.state --route through.csv").prints(&[
+        "door 0 at (2.9",
+        "do not wait, go round: ",
+        " more (expected loss",
+    ]);
+    let advice = |key: &str| run.summary().at(&format!("/crossings/0/advice/{key}")).as_f64();
+    // 6 m more at most, at 0.5 m/s.
+    assert!((4.0..14.0).contains(&advice("detour_s").unwrap()) && advice("patience_s") == Some(0.0));
+    assert!(advice("loss_s") <= advice("detour_s"));
+    run.goes_well("a.state --route through.csv --speed 0.05").prints(&["wait at most ", ", then go round: "]);
+    assert!(advice("patience_s").unwrap() > 30.0 && advice("loss_s").unwrap() < 60.0);
+    run.goes_well("a.state --route through.csv --radius 0.49")
+        .prints(&["wait until the way is free; no way round is known within 20 m"]);
+    assert_eq!((advice("detour_s"), advice("patience_s")), (None, None));
+    run.goes_well("a.state --route inside.csv").prints(&["the route starts inside it"]);
+    run.goes_well("a.state --route wall.csv").prints(&["a wall at (", "blocked: 100.0 %: not passable"]);
+    run.goes_well("a.state --route free.csv");
+    assert_eq!(*run.summary().at("/crossings"), json!([]));
+    // The door is told once, and the way back is no way round.
+    run.goes_well("a.state --route twice.csv");
+    assert_eq!(run.summary().at("/crossings").as_array().unwrap().len(), 1);
+    assert!(advice("detour_s").unwrap() > 4.0);
 }
 
 #[test]

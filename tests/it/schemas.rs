@@ -19,7 +19,8 @@ fn results() -> [(&'static str, Value); 4] {
     logs.goes_well("a.log --quiet --no-rrd --state a.state");
     let logged = logs.summary().0;
     let predicted = logs.with("predict");
-    predicted.goes_well("a.state --place 1,0");
+    predicted.write("way.csv", "0.5 0\n2 0\n");
+    predicted.goes_well("a.state --place 1,0 --route way.csv --at +1m");
     let trials = Run::of("grid_world");
     trials.goes_well("--quiet --steps 200 --trials 2 --strategy recency --strategy random --estimator paper");
     let read = |run: &Run, file: &str| serde_json::from_slice(&fs::read(run.out(file)).unwrap()).unwrap();

@@ -8,9 +8,6 @@ use anyhow::{Context, bail};
 use std::time::{Duration, Instant};
 use survey::{EdgeOutlook, Outlook, RouteGraph, Travel};
 
-/// An edge that is open with a smaller probability is closed: its cost would be more than ten times its length.
-const CLOSED_BELOW: f64 = 0.1;
-
 /// The number of edges in a request, so that it fits in one datagram: with CycloneDDS, a longer one is damaged as answers are
 /// (`dds/services.rs`).
 const MAX_EDGES: usize = 100;
@@ -21,6 +18,8 @@ pub(super) struct Routes {
     next_round: Instant,
     /// The number of the edge that is looked at next. One edge per reading bounds the time of a turn.
     next_edge: usize,
+    /// What is known of all edges, for the ways round them.
+    known: Vec<Option<EdgeOutlook>>,
     found: Vec<EdgeOutlook>,
 }
 
@@ -42,7 +41,8 @@ impl Routes {
         if let Some(id) = graph.edges().find(|id| u16::try_from(*id).is_err()) {
             bail!("{name}: edge {id}: the service DynamicEdges has numbers up to 65535");
         }
-        Ok(Some(Self { graph, next_round: Instant::now(), next_edge: 0, found: Vec::new() }))
+        let known = vec![None; graph.edges().count()];
+        Ok(Some(Self { graph, next_round: Instant::now(), next_edge: 0, known, found: Vec::new() }))
     }
 
     /// Looks at the next edge. Returns a request when `MAX_EDGES` wait for it, and after the last edge. Each round sends all edges
@@ -57,9 +57,11 @@ impl Routes {
         if now < self.next_round {
             return None;
         }
-        self.found.extend(self.graph.edge_outlook(self.next_edge, outlook, travel));
+        self.known[self.next_edge] = self.graph.edge_outlook(self.next_edge, outlook, travel);
+        self.graph.expect(self.next_edge, &mut self.known, travel);
+        self.found.extend(self.known[self.next_edge].clone());
         self.next_edge += 1;
-        let is_last = self.next_edge >= self.graph.edges().count();
+        let is_last = self.next_edge >= self.known.len();
         if is_last {
             self.next_edge = 0;
         }
@@ -74,11 +76,10 @@ impl Routes {
 }
 
 fn request(found: &[EdgeOutlook]) -> DynamicEdges {
-    let is_closed = |edge: &&EdgeOutlook| edge.open < CLOSED_BELOW;
     let id = |edge: &EdgeOutlook| edge.id as u16;
     DynamicEdges {
-        closed: found.iter().filter(is_closed).map(id).collect(),
-        opened: found.iter().filter(|edge| !is_closed(edge)).map(id).collect(),
+        closed: found.iter().filter(|edge| edge.is_closed()).map(id).collect(),
+        opened: found.iter().filter(|edge| !edge.is_closed()).map(id).collect(),
         // `nav2_route` adds this to what its other scorers say, of which one is the length.
         adjusted: found.iter().map(|edge| (id(edge), (edge.cost_m() - edge.length_m) as f32)).collect(),
     }
@@ -125,10 +126,16 @@ mod tests {
         let travel = Travel { departure_s: outlook.now_s(), speed_m_s: 0.5, radius_m: 0.1 };
         let open = graph.edge_outlook(0, &outlook, travel).unwrap();
         assert!(open.open < 1.0, "{open:?}");
-        let (mut closed, mut half) = (open, open);
+        // Nothing is known of how long it lasts, nor of a way round.
+        let loss_m = 1000.0 * (1.0 - open.open) as f32;
+        let (mut closed, mut half) = (open.clone(), open);
         (closed.open, half.open, half.id) = (0.05, 0.5, 8);
         let sent = request(&[closed, half]);
         assert_eq!((sent.closed, sent.opened), (vec![7], vec![8]));
-        assert_eq!(sent.adjusted, [(7, 38.0), (8, 2.0)]);
+        assert!(
+            sent.adjusted.iter().all(|(_, more_m)| (more_m - loss_m).abs() < 1e-2),
+            "{:?}",
+            sent.adjusted
+        );
     }
 }

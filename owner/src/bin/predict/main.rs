@@ -1,6 +1,7 @@
 //! A place as it will be: what is blocked at a time, from a state file.
 
 mod asked;
+mod crossing;
 mod moment;
 mod place;
 mod route;
@@ -11,6 +12,7 @@ use clap::Parser;
 use cli::flags::{folder, input_file, number, value_of};
 use cli::program::{Failure, arguments, input, results_folder, start, state_failure};
 use cli::terminal::print;
+use crossing::{Crossing, Line};
 use draw::layers::Layer;
 use draw::pictures::{NamedLine, draw_values};
 use files::write_file;
@@ -52,6 +54,9 @@ door, an object that comes and goes or a group of cells that change is probably 
 files are numbered. Also in the folder: for how long a look at a place counts before its usual hours say more (expiry.png, expiry.npy, \
 in hours), and all that is printed, as data (summary.json).
 
+In front of what comes and goes on a route, the robot waits or goes round: the advice follows from how long such things stay. (nav2_route \
+only adds costs; it does not wait.)
+
 Hours and weekdays are learned per door and per square of half a meter, and have more weight the longer they were observed.";
 
 /// The command line.
@@ -90,12 +95,13 @@ struct Args {
     #[arg(long, value_name = "NUMBER")]
     door: Vec<u32>,
 
-    /// A route: lines of `x y` (m) or `time x y` (s, m; as a TUM trajectory). Departure is at the first time of --at
+    /// A route: lines of `x y` (m) or `time x y` (s, m; as a TUM trajectory). Departure is at the first time of --at. Says in front of
+    /// what to wait, for how long at most, and how much longer the way round takes
     #[arg(long, value_name = "FILE", value_parser = input_file())]
     route: Option<PathBuf>,
 
     /// A graph of routes (GeoJSON of nav2_route): written to graph.geojson in the folder, with open_probability in the metadata
-    /// of each edge, and with cost = length / open_probability
+    /// of each edge, and with the expected time of waiting or going round in its cost
     #[arg(long, value_name = "FILE", value_parser = input_file())]
     graph: Option<PathBuf>,
 
@@ -131,6 +137,8 @@ struct Summary {
     times: Vec<String>,
     places: Vec<Place>,
     route: Vec<Stop>,
+    /// What the route meets that comes and goes, and what to do in front of it.
+    crossings: Vec<Crossing>,
     /// The names of the other files with results, in the same folder.
     files: Vec<String>,
 }
@@ -156,7 +164,10 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let stops =
         args.route.iter().map(|path| route(path, &forecast, travel)).collect::<anyhow::Result<Vec<_>>>();
     let graph = args.graph.as_ref().map(|path| graph(path, &forecast, travel, args.from));
-    let (route, graph) = (stops.map_err(input)?.concat(), graph.transpose().map_err(input)?);
+    let (route, met) = stops.map_err(input)?.pop().unwrap_or_default();
+    let graph = graph.transpose().map_err(input)?;
+    let line = Line { forecast: &forecast, travel, points: &route };
+    let crossings = met.iter().map(|stop| line.crossing(stop)).collect();
     let folder = results_folder(&args.out)?;
     for (number, time_s) in times_s.iter().enumerate() {
         let suffix = if times_s.len() == 1 { String::new() } else { format!("_{}", number + 1) };
@@ -178,6 +189,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         times_s,
         places,
         route,
+        crossings,
         files: folder.results()?,
     };
     let text = serde_json::to_string_pretty(&summary).context("summary.json")?;
@@ -252,10 +264,14 @@ fn say(summary: &Summary, forecast: &Forecast) -> anyhow::Result<()> {
         print(format_args!("no door is known; --place NUMBER asks for a place of the report of map_log"))?;
     }
     let begin_s = summary.times_s[0];
-    for Stop { x_m, y_m, time_s, blocked } in &summary.route {
+    for Stop { x_m, y_m, time_s, blocked, .. } in &summary.route {
         let blocked =
             blocked.map_or("never seen".to_owned(), |blocked| format!("blocked: {}", percent(blocked)));
         print(format_args!("({x_m:.2}, {y_m:.2}) m after {}: {blocked}", length_of(time_s - begin_s)))?;
+    }
+    for Crossing { title, time_s, blocked, advice, .. } in &summary.crossings {
+        let (after, blocked) = (length_of(time_s - begin_s), percent(*blocked));
+        print(format_args!("{title}, after {after}: blocked: {blocked}: {}", advice.text))?;
     }
     Ok(())
 }

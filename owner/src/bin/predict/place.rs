@@ -229,7 +229,7 @@ pub(crate) fn door_lines(forecast: &Forecast) -> Vec<NamedLine> {
 }
 
 /// A place as it is called in the report.
-fn called(place: &survey::Place) -> String {
+pub(crate) fn called(place: &survey::Place) -> String {
     let name = place.name.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
     format!("place {}{name}", place.number)
 }

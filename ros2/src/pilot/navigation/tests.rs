@@ -29,7 +29,7 @@ fn live(policy: &Policy, navigator: Navigator) -> LivePilot {
 }
 
 fn navigation(pilot: &mut LivePilot) -> &mut Navigation {
-    pilot.explorer.as_mut().unwrap().driver_mut().navigation.as_mut().unwrap()
+    pilot.explorer.as_mut().unwrap().driver.navigation.as_mut().unwrap()
 }
 
 /// What Nav2 says in a turn in which the controller of the other robot has finished its goal.
@@ -65,7 +65,7 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
                 by_nav2.navigated(news);
             }
             let order = by_nav2.command(&turn.belief, turn.features, &robot.mapper);
-            let is_watching = robot.pilot.driver_mut().view().status == Status::Exploring;
+            let is_watching = robot.pilot.driver.view().status == Status::Exploring;
             if let Some(target) = &mut navigation(&mut by_nav2).target {
                 // Nav2 makes progress, however long the controller explores around its goal, and is there when it is.
                 target.nearest_s = turn.reading.time_s;
