@@ -4,7 +4,8 @@
 //! This library has places with a calendar, and robots that patrol them: buildings of rooms and viewpoints in which things
 //! with two states (doors, boxes, seats, parked robots) change by hour and weekday; a robot with a battery; strategies that
 //! choose where to look next; and a [bound](freshness_bound) of what any strategy can reach. The programs `patrols`,
-//! `physics_patrols` and `real_series` print the rows of the pages `docs/strategies.md` and `docs/things.md`.
+//! `physics_patrols` and `real_series` print the rows of the pages `docs/strategies.md` and `docs/things.md`, and `trips` those of
+//! `docs/predict.md`.
 //!
 //! There are no cells here: from a viewpoint a robot sees the state of a set of things, and a closed door keeps it from
 //! the viewpoints of a room. So a week takes a fraction of a second, and strategies can be compared over hundreds of
@@ -30,6 +31,7 @@ pub mod freshness_bound;
 mod law;
 mod learner;
 mod patrol;
+pub mod pays;
 pub mod rows;
 mod user_regret;
 

@@ -32,7 +32,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("draw", "interfaces files mapper agent robot results"),
     ("viewer", "interfaces files mapper localizer agent robot results draw"),
     ("cli", "interfaces files mapper robot ros results"),
-    ("owner", "interfaces files mapper robot logs survey results draw viewer cli"),
+    ("owner", "interfaces files mapper controller robot logs survey results draw viewer cli"),
     (
         "curious",
         "interfaces files calendar sim worldfile stage mapper agent controller robot results evaluation draw viewer cli",
@@ -42,7 +42,7 @@ const ALLOWED: &[(&str, &str)] = &[
         "interfaces files sim worldfile mapper localizer ros logs agent controller robot results survey cli",
     ),
     // No part of the product: no other crate may use it.
-    ("studies", "interfaces calendar sim mapper agent robot evaluation reports"),
+    ("studies", "interfaces calendar sim worldfile mapper controller agent robot draw evaluation reports"),
 ];
 
 /// Packages that only these crates may have as a dependency.
