@@ -48,7 +48,7 @@ pub struct EdgeOutlook {
     pub arrival_s: f64,
     /// The probability that it is open then.
     pub open: f64,
-    /// How much longer the best way over other edges takes, s; infinite where none is known.
+    /// How much longer the best way over other edges takes, s; infinite without a known one.
     pub detour_s: f64,
     /// How long to wait in front of what most probably blocks it, before the detour is taken, s; infinite where there is none. `None` where
     /// it is not known how long it blocks, or without a detour, if it probably blocks for long.
@@ -61,7 +61,7 @@ pub struct EdgeOutlook {
 
 impl EdgeOutlook {
     /// The length that costs as much time as is expected of the edge, m: what blocks it is waited for, or costs the way round, whichever is
-    /// less; the way round where nothing is known of how long it blocks, and a kilometer where none is known either.
+    /// less; the way round where nothing is known of how long it blocks, and a kilometer without a known way round.
     pub fn cost_m(&self) -> f64 {
         self.length_m + self.loss_m
     }

@@ -277,7 +277,7 @@ fn a_route_through_a_closed_door_waits_or_goes_round() {
     run.goes_well("a.state --route wall.csv").prints(&["a wall at (", "blocked: 100.0 %: not passable"]);
     run.goes_well("a.state --route free.csv");
     assert_eq!(*run.summary().at("/crossings"), json!([]));
-    // The door is told once, and the way back is no way round.
+    // The door is reported once, and the way back is no way round.
     run.goes_well("a.state --route twice.csv");
     assert_eq!(run.summary().at("/crossings").as_array().unwrap().len(), 1);
     assert!(advice("detour_s").unwrap() > 4.0);

@@ -4,7 +4,7 @@ use calendar::Timeline;
 use interfaces::{Cell, CellReading, GridFrame, Purpose, RandomStream, Step, World};
 use nalgebra::{Isometry2, Point2};
 
-/// The side of a cell, m, and the time for the way to the next one, s: a robot with a laser drives 3.5 to 3.6 m of the 4.1 m from
+/// The side of a cell, m, and the time to drive to the next one, s: a robot with a laser drives 3.5 to 3.6 m of the 4.1 m from
 /// room to room in ten seconds, with its turns and stops (`way_m` of `pays measure`); here a room is 9 cells wide.
 const CELL_M: f64 = 0.5;
 pub(super) const STEP_S: f64 = 1.25;

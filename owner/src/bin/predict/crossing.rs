@@ -13,7 +13,7 @@ use survey::{Forecast, Obstacle, Stop, Travel};
 const PROBABLY: f64 = 0.5;
 /// A way round is searched within this distance along both axes, m.
 const WINDOW_M: f64 = 20.0;
-/// It comes back to the route at one of so many points behind the obstacle, and the distance between them, m. (A route can lead back to
+/// The number of points behind the obstacle at one of which it comes back to the route, and the distance between them, m. (A route can lead back to
 /// where it was; that is no way round.)
 const STEPS: u32 = 8;
 const STEP_M: f64 = 0.5;
@@ -40,7 +40,7 @@ pub(crate) struct Crossing {
 pub(crate) struct Advice {
     /// How long to wait at most, s; infinite (`null` in JSON) without a limit, `None` if nothing is known of how long it stays.
     pub(crate) patience_s: Option<f64>,
-    /// How much longer the way round takes, s; `None` if none is known.
+    /// How much longer the way round takes, s; `None` without a known way round.
     pub(crate) detour_s: Option<f64>,
     /// The expected loss of time, s, averaged over the cases that it is in the way, and that it is not.
     pub(crate) loss_s: Option<f64>,

@@ -72,7 +72,7 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<
     }
     ensure!(points.len() >= 2, "{}: a route needs at least two points", path.display());
     let (begin_s, mut stops, mut met) = (points[0].0, Vec::<Stop>::new(), Vec::<survey::Stop>::new());
-    // Points can be nearer than the body is wide: a route is looked at in pieces of at least its radius.
+    // Points can be nearer than the body is wide: a route is looked at in pieces of at least its radius, or of ten seconds.
     let mut looked = (points[0].1, 0.0, travel.departure_s);
     let piece_m = travel.radius_m.max(forecast.mapper().frame().resolution_m());
     let last = points.len() - 1;
@@ -88,7 +88,7 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<
         };
         let (begin, way_m, end_m, from_s) = (looked.0, looked.1, way_m + length_m, looked.2);
         let ahead = (at - begin).norm();
-        if number > 0 && number < last && ahead < piece_m {
+        if number > 0 && number < last && ahead < piece_m && time_s < looked.2 + 10.0 {
             let blocked = stops.last().and_then(|stop| stop.blocked);
             stops.push(Stop { x_m: at.x, y_m: at.y, way_m: end_m, time_s, blocked });
             continue;
