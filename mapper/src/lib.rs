@@ -446,6 +446,12 @@ impl Mapper {
         self.cells.is_candidate(index)
     }
 
+    /// Whether the cell ever changed.
+    #[inline]
+    pub fn has_changed(&self, index: usize) -> bool {
+        self.cells.has_changed(index)
+    }
+
     /// The indices of the cells that ever changed, in the order of their first change.
     pub fn changed(&self) -> impl Iterator<Item = usize> {
         self.cells.changed.iter().map(|&index| index as usize)

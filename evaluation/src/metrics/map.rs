@@ -30,9 +30,10 @@ fn visible_cells(truth: &impl GroundTruth) -> impl Iterator<Item = usize> {
 pub fn map_scores(mapper: &Mapper, truth: &impl GroundTruth) -> MapScores {
     let (mut cells, mut seen, mut correct) = (0_usize, 0_usize, 0_usize);
     for index in visible_cells(truth) {
+        let state = mapper.states().cells()[index];
         cells += 1;
-        seen += usize::from(mapper.was_ever_seen(index));
-        correct += usize::from(is_correct(mapper.states().cells()[index], truth.state(index)) == Some(true));
+        seen += usize::from(state != CellState::Unknown || mapper.was_ever_seen(index));
+        correct += usize::from(is_correct(state, truth.state(index)) == Some(true));
     }
     let share = |count: usize| count as f64 / cells.max(1) as f64;
     MapScores { coverage: share(seen), map_quality: share(correct) }

@@ -34,14 +34,14 @@ impl PredictedState {
             CellState::Unknown => last_seen,
             _ => chains.blocked_probability(truth, index, last_seen, mapper.recency(index) + ahead),
         };
+        let true_chain = chains.map(of_chain);
+        if !mapper.has_changed(index) {
+            return Self { model: last_seen, last_seen, average: last_seen, true_chain };
+        }
         let seen = mapper.statistics(index);
         let watched = seen.watched_free + seen.watched_blocked;
-        Self {
-            model: mapper.blocked_probability_later(index, ahead),
-            last_seen,
-            average: if watched > 0.0 { seen.watched_blocked / watched } else { last_seen },
-            true_chain: chains.map(of_chain),
-        }
+        let average = if watched > 0.0 { seen.watched_blocked / watched } else { last_seen };
+        Self { model: mapper.blocked_probability_later(index, ahead), last_seen, average, true_chain }
     }
 }
 
@@ -209,7 +209,7 @@ impl Lookahead {
         }
         let states = mapper.states().cells().iter().enumerate();
         let may_change = |&(index, state): &(usize, &CellState)| {
-            *state == CellState::Free || *state == CellState::Blocked && mapper.statistics(index).events() > 0
+            *state == CellState::Free || *state == CellState::Blocked && mapper.has_changed(index)
         };
         let frozen = |index| (index as u32, PredictedState::of(mapper, truth, index, horizon, chains));
         self.cells = states.filter(may_change).map(|(index, _)| frozen(index)).collect();
