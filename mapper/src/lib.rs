@@ -43,7 +43,7 @@ pub use things::{Door, Leaf, ObjectReport, Segment};
 
 pub use tiles::Tile;
 
-use derived::ExpectedChanges;
+use derived::{Alone, ExpectedChanges};
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, SMALL_GRID, SettingsCheck, SettingsError,
     Transition, ValueError, Values, is_valid_pose, value,
@@ -122,6 +122,7 @@ pub struct Mapper {
     cells: CellMap,
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
+    alone: Alone,
     things: Things,
     tiles: Tiles,
     scan: ProjectedScan,
@@ -188,10 +189,10 @@ impl Mapper {
     fn build(settings: MapperSettings, prior: Grid<CellState>) -> Self {
         let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
         let occupancy = settings.occupancy.build(&settings, &mut cells);
-        let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
+        let (expected_changes, alone) = (ExpectedChanges::default(), Alone::default());
         let tiles = Tiles::new(&settings, cells.frame().resolution_m());
-        let (things, points) = (Things::default(), Vec::new());
-        Self { settings, cells, occupancy, expected_changes, tiles, things, scan, points }
+        let (things, scan, points) = (Things::default(), ProjectedScan::default(), Vec::new());
+        Self { settings, cells, occupancy, expected_changes, alone, tiles, things, scan, points }
     }
 
     /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
@@ -307,6 +308,7 @@ impl Mapper {
         interfaces::restore(self.values(), snapshot)?;
         self.cells.derive()?;
         self.points.clear();
+        self.alone = Alone::default();
         let is_sound = self.expected_changes.is_sound(&self.cells)
             && self.tiles.is_sound(&self.cells)
             && self.things.is_sound(&self.cells);

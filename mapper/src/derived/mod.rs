@@ -1,6 +1,7 @@
 //! The maps that are computed from the states and the change statistics: cycle time, rate, change probability,
 //! recency, credible interval, probability of being blocked.
 
+mod alone;
 mod blocked_probability;
 mod change_probability;
 mod credible_interval;
@@ -11,12 +12,14 @@ mod look_worth;
 use crate::Mapper;
 use crate::change::{Evidence, Posterior, Waiting};
 use crate::things::OfCell;
+pub(crate) use alone::Alone;
 use blocked_probability::Chain;
 use change_probability::change_probability;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
 pub use look_worth::Undiscovered;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 impl Mapper {
     /// The cycle time T of the cell (equation 1): the mean duration of blocked → free → blocked; ∞ for a cell that
@@ -154,13 +157,15 @@ impl Mapper {
     /// What is known of the object of a cell, or of the cell as a thing of its own.
     fn posterior(&self, index: usize) -> Option<Cow<'_, Posterior>> {
         let of_object = self.object(index).map(|object| Cow::Borrowed(object.posterior()));
-        of_object.or_else(|| self.alone(index).map(Cow::Owned))
+        of_object.or_else(|| self.alone(index).map(|alone| Cow::Owned((*alone).clone())))
     }
 
     /// What is known of a cell that was mostly found to have changed out of view, and belongs to nothing: it is a thing of one cell.
-    fn alone(&self, index: usize) -> Option<Posterior> {
-        let evidence = self.changed_out_of_view(index).filter(Evidence::stands)?;
-        Some(Posterior::new(&evidence, &self.things.objects.population))
+    fn alone(&self, index: usize) -> Option<Arc<Posterior>> {
+        self.alone.of(index, self.cells.reading(), || {
+            let evidence = self.changed_out_of_view(index).filter(Evidence::stands)?;
+            Some(Posterior::new(&evidence, &self.things.objects.population))
+        })
     }
 
     /// The looks at a cell that was mostly found to have changed out of view.
@@ -199,7 +204,7 @@ impl Mapper {
         let by_cell = |alone: &Posterior| alone.probability(observed > 0.5, time_s - seen.last_seen);
         let alone = match &thing {
             Some(thing) => thing.blocked_probability(time_s),
-            None => self.alone(index).as_ref().map_or_else(|| chain.blocked_probability(observed), by_cell),
+            None => self.alone(index).as_deref().map_or_else(|| chain.blocked_probability(observed), by_cell),
         };
         let by_tile = self.tiles.of_cell(self.frame().cell(index), self.cells.slot(index)?, time_s);
         let predicted = by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone));
