@@ -1,4 +1,4 @@
-use interfaces::{Cell, CellState, Grid, Transition, Values};
+use interfaces::{Cell, CellState, Grid, Obstacles, Transition, Values};
 use nalgebra::{Isometry2, Point2};
 
 /// The state of a driver.
@@ -89,6 +89,9 @@ pub struct ControlInput<'a> {
     /// The end points of the beams of this tick's reading that hit something, in the frame of the map, m. Empty if
     /// the sensor measures nothing but the states of cells.
     pub points: &'a [Point2<f64>],
+    /// How long obstacles stay: the robot then waits for one that blocks its path, if the expected time is shorter so. `None`: it takes
+    /// the way round at once.
+    pub obstacles: Option<&'a dyn Obstacles>,
 }
 
 impl ControlInput<'_> {

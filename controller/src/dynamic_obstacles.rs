@@ -61,8 +61,14 @@ mod tests {
         *map.get_mut(transition.cell).unwrap() = transition.after;
         let pose = interfaces::pose(0.0, 0.0, 0.0);
         let mut dynamic = DynamicObstacleFilter::new(&map);
-        let input =
-            |time, transitions| ControlInput { time, pose: &pose, map: &map, transitions, points: &[] };
+        let input = |time, transitions| ControlInput {
+            time,
+            pose: &pose,
+            map: &map,
+            transitions,
+            points: &[],
+            obstacles: None,
+        };
         let transitions = [transition];
         let now = input(1.0, &transitions);
         dynamic.update(&now);

@@ -1,7 +1,7 @@
 use crate::pilot::{Belief, GoalCount, Level, Message, Permission, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use controller::{ControlInput, Driver, DriverView, Outcome, Status};
-use interfaces::{Values, values};
+use interfaces::{Obstacles, Values, values};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 
@@ -15,13 +15,20 @@ pub struct Autonomous<G, D> {
     goals: GoalCount,
     messages: Vec<Message>,
     is_done: bool,
+    is_patient: bool,
 }
 
 impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
     /// A pilot that has no goal yet.
     pub fn new(selector: G, driver: D) -> Self {
         let (goals, messages) = (GoalCount::default(), Vec::new());
-        Self { selector, driver, goals, messages, is_done: false }
+        Self { selector, driver, goals, messages, is_done: false, is_patient: false }
+    }
+
+    /// Lets the robot wait for an obstacle that blocks its path, for as long as the map expects that to be faster than the way round.
+    /// Otherwise it takes the way round at once, as the paper's.
+    pub fn patient(self) -> Self {
+        Self { is_patient: true, ..self }
     }
 
     fn log(&mut self, level: Level, text: String) {
@@ -39,7 +46,8 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
         next: impl FnOnce(&mut G, &mut TravelTimes<'_, D>) -> Option<(Goal, String)>,
     ) -> D::Command {
         self.selector.observe(features, mapper.transitions());
-        let input = input(mapper, &belief.pose);
+        let obstacles = self.is_patient.then_some(mapper as &dyn Obstacles);
+        let input = ControlInput { obstacles, ..input(mapper, &belief.pose) };
         match belief.permission {
             Permission::Rest => return self.driver.pause(&input, false),
             Permission::LookAround => return self.driver.pause(&input, true),
@@ -133,6 +141,7 @@ fn input<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> ControlInput<'a> {
         map: mapper.states(),
         transitions: mapper.transitions(),
         points: mapper.points(),
+        obstacles: None,
     }
 }
 

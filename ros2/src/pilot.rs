@@ -42,7 +42,7 @@ impl LivePilot {
             Navigator::GoalPose => Some(Navigation::new(false)),
         };
         let driver = LiveDriver { controller, navigation };
-        Ok(Self { explorer: Some(Autonomous::new(agent, driver)), is_paused: false })
+        Ok(Self { explorer: Some(Autonomous::new(agent, driver).patient()), is_paused: false })
     }
 
     /// Lets the robot explore, or wait.

@@ -18,6 +18,8 @@ pub enum Service {
     SerializeMap,
     /// Goes on from a state in any file.
     DeserializeMap,
+    /// How long to wait at edges of the graph of routes that are probably blocked.
+    GetPatience,
     /// A transition of the managed lifecycle.
     ChangeState,
     /// The state of the managed lifecycle.
@@ -44,11 +46,12 @@ pub enum Service {
 
 /// Every service in the order of the enum: its name below that of the node, and its type, a package and a name.
 #[rustfmt::skip]
-const SERVICES: [(Service, &str, &str, &str); 15] = [
+const SERVICES: [(Service, &str, &str, &str); 16] = [
     (Service::SaveState, "~/save_state", "std_srvs", "Trigger"),
     (Service::SaveMap, "~/save_map", "slam_toolbox", "SaveMap"),
     (Service::SerializeMap, "~/serialize_map", "slam_toolbox", "SerializePoseGraph"),
     (Service::DeserializeMap, "~/deserialize_map", "slam_toolbox", "DeserializePoseGraph"),
+    (Service::GetPatience, "~/get_patience", "std_srvs", "Trigger"),
     (Service::ChangeState, "~/change_state", "lifecycle_msgs", "ChangeState"),
     (Service::GetState, "~/get_state", "lifecycle_msgs", "GetState"),
     (Service::GetAvailableStates, "~/get_available_states", "lifecycle_msgs", "GetAvailableStates"),

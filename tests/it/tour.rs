@@ -48,3 +48,20 @@ fn a_tour_of_ones_own_ends_the_run() {
     assert_eq!(summary.number("/goals/reached"), 2.0);
     assert!((4.0..30.0).contains(&summary.number("/simulated_s")), "{}", summary.number("/simulated_s"));
 }
+
+/// A door is closed for 5 s of 20, and the way round takes 30 s: on that, the robot is in the upper rooms.
+#[test]
+fn the_robot_waits_for_a_door_that_opens_soon() {
+    let run = Run::new();
+    let door = "[[obstacle]]\nname = \"door\"\nkind = \"hinged_door\"\nfrom_m = [6.0, 2.5]\nto_m = [6.0, 3.5]\n\
+        thickness_m = 0.05\nopen_deg = 90.0\nopening = \"random\"\nclosed_s = 5.0\nopen_s = 15.0\n";
+    let rooms = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/four_rooms.toml"));
+    run.write("doors.toml", &format!("{}\n{door}", rooms.unwrap()));
+    run.write("mine.toml", "waypoints_m = [[4.0, 3.0], [8.0, 3.0]]\nrepeat = true\n");
+    run.goes_well(
+        "--quiet --no-rrd --world doors.toml --drive tour --tour mine.toml --duration 40m --seed 1",
+    );
+    let goals = run.summary().number("/goals/reached");
+    // At once 8 s for each goal, or 287 × ⅔ with a robot that always takes the way round.
+    assert!((210.0..300.0).contains(&goals), "{goals}");
+}

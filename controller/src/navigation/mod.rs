@@ -16,6 +16,8 @@ const REPLAN_S: f64 = 0.5;
 const OFF_PATH_M: f64 = 0.3;
 /// The time that the robot waits if the path to the goal is blocked, s. Longer than a slow robot needs to pass a door.
 const WAIT_S: f64 = 10.0;
+/// A path that takes this much longer than one past obstacles that may go is a way round, s.
+const DETOUR_S: f64 = 3.0;
 /// The robot is stuck if it stays for this time, the movement time allowance, s, within this distance, the required movement
 /// radius, m.
 const MOVEMENT_TIME_ALLOWANCE_S: f64 = 5.0;
@@ -58,6 +60,17 @@ pub(crate) enum Progress<Command> {
     GivenUp,
 }
 
+/// Whether the robot waits at an obstacle that may go.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+enum Patience {
+    /// Not now.
+    Rest,
+    /// The robot drives to the obstacle, and waits there.
+    Waits,
+    /// The obstacle has not gone in time: the robot takes the way round, and waits no more.
+    Over,
+}
+
 /// The navigation to one goal: plans, replans, waits, recovers, gives up.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct NavigationTask {
@@ -72,6 +85,7 @@ pub(crate) struct NavigationTask {
     /// The shortest distance from the end of a path to the goal, m.
     best_distance_m: f64,
     waits_until_s: Option<f64>,
+    patience: Patience,
     /// The position at which progress was last detected, and the time.
     anchor: (Point2<f64>, f64),
     recoveries: u32,
@@ -94,6 +108,7 @@ impl NavigationTask {
             plan: None,
             best_distance_m: f64::INFINITY,
             waits_until_s: None,
+            patience: Patience::Rest,
             anchor: (position, time),
             recoveries: 0,
             recovery_at: position,
@@ -124,16 +139,19 @@ impl NavigationTask {
         }
         let off_path_m = path.advance(&position);
         if self.must_plan(tick, off_path_m) {
+            let waits_until_s = self.waits_until_s.take_if(|_| self.patience == Patience::Waits);
             self.plan(tick, path);
+            self.consider_waiting(tick, path, drive.body().speed_mps, waits_until_s);
         }
         let scene = tick.scene();
-        if self.waits(input) {
+        let is_there = path.remaining_m(&position) <= drive.body().tolerance_m;
+        if self.waits(input) && (is_there || self.patience != Patience::Waits) {
             self.anchor = (position, input.time);
             let may_stay = scene.costmap.is_traversable(scene.costmap.frame().cell_at(&position));
             let command = if may_stay { drive.rest(&scene) } else { drive.follow(&scene, path) };
             return Progress::Underway(command);
         }
-        if let Some(end) = self.plan.filter(|_| path.remaining_m(&position) <= drive.body().tolerance_m) {
+        if let Some(end) = self.plan.filter(|_| is_there) {
             return Progress::Arrived(end);
         }
         if !self.keeps_trying(input) {
@@ -158,6 +176,9 @@ impl NavigationTask {
         let waits = self.waits_until_s.is_some_and(|until_s| input.time < until_s);
         if !waits && self.waits_until_s.take().is_some() {
             self.best_distance_m = self.plan.map_or(f64::INFINITY, |end| end.distance_to_goal_m);
+            if self.patience == Patience::Waits {
+                (self.patience, self.plan) = (Patience::Over, None);
+            }
         }
         waits
     }
@@ -184,6 +205,50 @@ impl NavigationTask {
             // The obstacle may move away again. A step of local exploration is not worth the wait.
             self.waits_until_s = Some(input.time + WAIT_S);
         }
+    }
+
+    /// Plans to an obstacle that may go instead, and to wait there, if the robot is expected to be at the goal earlier so than on the way
+    /// round that was planned. `waits_until_s`: it waits there already.
+    fn consider_waiting(
+        &mut self,
+        tick: &mut Tick,
+        path: &mut Path,
+        speed_mps: f64,
+        waits_until_s: Option<f64>,
+    ) {
+        let Tick { input, surroundings: Surroundings { planner, .. } } = tick;
+        let may_wait = self.patience != Patience::Over && self.max_distance_m.is_infinite();
+        let Some(known) = input.obstacles.filter(|_| may_wait) else { return };
+        let position = input.position();
+        self.patience = Patience::Rest;
+        let round_m = match self.plan {
+            Some(end) if end.is_goal => path.remaining_m(&position),
+            _ => f64::INFINITY,
+        };
+        let detour_s = |way_m: f64| (round_m - way_m) / speed_mps;
+        let blocked =
+            if detour_s((self.goal - position).norm()) > DETOUR_S { known.cells() } else { Vec::new() };
+        if blocked.is_empty() {
+            return;
+        }
+        let past = planner.plan_past(input.map, &position, &self.goal, &blocked, path);
+        let most_s = 0.5 * (self.timeout_s - self.elapsed_s(input));
+        let patience_s = past.map_or(0.0, |(way_m, at)| match detour_s(way_m) {
+            detour_s if detour_s > DETOUR_S => {
+                // Cells of the same obstacle can belong to nothing yet.
+                let near = blocked.iter().filter(|cell| planner.is_near(&at, **cell));
+                near.map(|cell| known.patience(*cell, detour_s)).fold(0.0, f64::max).min(most_s)
+            }
+            _ => 0.0,
+        });
+        if patience_s <= 0.0 {
+            self.plan = planner.plan(input.map, &position, &self.goal, path);
+            planner.look_for_better();
+            return;
+        }
+        let until_s = input.time + path.remaining_m(&position) / speed_mps + patience_s;
+        self.waits_until_s = Some(waits_until_s.unwrap_or(until_s));
+        self.patience = Patience::Waits;
     }
 
     /// Checks the progress, and starts a recovery if the robot is stuck. Returns false after too many recoveries.

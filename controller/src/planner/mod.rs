@@ -18,6 +18,9 @@ use nalgebra::Point2;
 use path::corners;
 use std::collections::BTreeSet;
 
+/// The robot waits this far before its way is blocked, m: the leaf of a door needs room.
+const STANDOFF_M: f64 = 1.0;
+
 /// The end of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct PlanEnd {
@@ -136,6 +139,45 @@ impl Planner {
         self.on_path.insert(start);
         self.on_path.extend(corners.windows(2).flat_map(|leg| line(leg[0], leg[1])));
         self.end
+    }
+
+    /// Plans as if these blocked cells were free, up to the place where the robot has to wait for that. Returns the length of the whole
+    /// path, m, and the point where its way is blocked; `None`, with any path, if no path leads to the goal even then, or if none is in its way.
+    pub fn plan_past(
+        &mut self,
+        map: &Grid<CellState>,
+        from: &Point2<f64>,
+        goal: &Point2<f64>,
+        blocked: &[Cell],
+        path: &mut Path,
+    ) -> Option<(f64, Point2<f64>)> {
+        let changes = |[before, after]: [CellState; 2]| -> Vec<Transition> {
+            blocked.iter().map(|&cell| Transition { cell, before, after }).collect()
+        };
+        let states = [CellState::Blocked, CellState::Free];
+        self.inflation.update(&changes(states), |_| (), |_| ());
+        let end = self.plan(map, from, goal, path);
+        self.inflation.update(&changes([states[1], states[0]]), |_| (), |_| ());
+        end.filter(|end| end.is_goal)?;
+        self.look_for_better();
+        let length_m = path.remaining_m(from);
+        let frame = *self.costmap().frame();
+        let is_lethal = |point: &Point2<f64>| !self.costmap().is_traversable(frame.cell_at(point));
+        let (until_m, at) = path.first(frame.resolution_m() / 2.0, is_lethal)?;
+        path.truncate((until_m - STANDOFF_M).max(0.0));
+        Some((length_m, at))
+    }
+
+    /// Detects every cell that becomes traversable, as if the last plan did not lead to the goal.
+    pub fn look_for_better(&mut self) {
+        self.end.iter_mut().for_each(|end| end.is_cut_off = true);
+    }
+
+    /// Whether a blocked cell can make a point lethal.
+    pub fn is_near(&self, point: &Point2<f64>, cell: Cell) -> bool {
+        let frame = self.costmap().frame();
+        let reach = f64::from(self.exit_reach / 4 + 1);
+        distance_squared(frame.cell_at(point), cell) <= reach * reach
     }
 
     /// Writes the length of the path from `from` to each reachable cell, in row-major order, m; cells of higher

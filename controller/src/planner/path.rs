@@ -65,6 +65,19 @@ impl Path {
         self.measure();
     }
 
+    /// The first point, in steps of this length, m, for which `is_end`, with its distance along the path, m.
+    pub(crate) fn first(
+        &self,
+        step_m: f64,
+        is_end: impl Fn(&Point2<f64>) -> bool,
+    ) -> Option<(f64, Point2<f64>)> {
+        let start = self.points.first()?;
+        let steps = (self.remaining_m[0] / step_m) as usize;
+        let at =
+            |step| self.lookahead_point(start, step as f64 * step_m).map(|at| (step as f64 * step_m, at));
+        (0..=steps).filter_map(at).find(|(_, at)| is_end(at))
+    }
+
     fn measure(&mut self) {
         self.remaining_m.clear();
         self.remaining_m.resize(self.points.len(), 0.0);

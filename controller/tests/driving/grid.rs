@@ -1,7 +1,9 @@
 //! The same controller in a world of cells, where a command is one move to a neighbor.
 
 use controller::{CellDrive, ControlInput, Controller, Driver, Outcome, Status};
-use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Step, Transition, pose};
+use interfaces::{
+    Cell, CellState, Grid, GridFrame, Obstacles, Purpose, RandomStream, Step, Transition, pose,
+};
 use nalgebra::{Isometry2, Point2};
 
 struct World {
@@ -9,7 +11,25 @@ struct World {
     robot: Cell,
     step: u32,
     transitions: Vec<Transition>,
+    patience: Option<Patience>,
 }
+
+/// Every obstacle goes after this number of steps, or is worth waiting for that long.
+#[derive(Debug)]
+struct Patience(f64);
+
+impl Obstacles for Patience {
+    fn cells(&self) -> Vec<Cell> {
+        vec![DOOR]
+    }
+
+    fn patience(&self, cell: Cell, detour: f64) -> f64 {
+        assert_eq!(cell, DOOR);
+        self.0.min(detour)
+    }
+}
+
+const DOOR: Cell = Cell::new(7, 0);
 
 impl World {
     fn new(rows: &[&str]) -> Self {
@@ -19,6 +39,7 @@ impl World {
             robot: Cell::new(0, 0),
             step: 0,
             transitions: Vec::new(),
+            patience: None,
         };
         for (y, row) in rows.iter().rev().enumerate() {
             for (x, character) in row.chars().enumerate() {
@@ -40,7 +61,8 @@ impl World {
 
     fn input<'a>(&'a self, pose: &'a Isometry2<f64>) -> ControlInput<'a> {
         let Self { map, transitions, .. } = self;
-        ControlInput { time: f64::from(self.step), pose, map, transitions, points: &[] }
+        let obstacles = self.patience.as_ref().map(|known| known as &dyn Obstacles);
+        ControlInput { time: f64::from(self.step), pose, map, transitions, points: &[], obstacles }
     }
 
     fn tick(&mut self, controller: &mut Controller<CellDrive>) -> Step {
@@ -140,4 +162,42 @@ fn it_knows_how_long_it_takes_to_get_anywhere() {
     let (pose, infinity) = (pose(at.x, at.y, 0.0), f64::INFINITY);
     controller.travel_times(&world.input(&pose), &mut times);
     assert_eq!(times, [1.0, 2.0, 3.0, 4.0, 0.0, 1.0, infinity, 5.0, 1.0, 2.0, infinity, 6.0]);
+}
+
+/// The steps to a goal 13 cells ahead, if the door is closed between these steps.
+fn steps_with_door(patience: Option<f64>, closed: std::ops::Range<u32>) -> u32 {
+    let mut world = World::new(&["..............", ".############.", "R............."]);
+    let mut controller = controller();
+    controller.set_goal(Point2::new(13.5, 0.5), Some(0.0));
+    while !matches!(controller.view().status, Status::Finished(_)) {
+        let (is_closed, was_closed) =
+            (closed.contains(&world.step), world.map.get(DOOR) == Some(&CellState::Blocked));
+        if is_closed != was_closed {
+            world.change(DOOR, if is_closed { CellState::Blocked } else { CellState::Free });
+        }
+        // Nobody looks through a closed door.
+        world.patience = patience.filter(|_| is_closed).map(Patience);
+        world.tick(&mut controller);
+        assert!(world.step < 100);
+    }
+    assert_eq!(world.robot, Cell::new(13, 0));
+    world.step - 1 // the robot arrives in the step before
+}
+
+#[test]
+fn it_waits_for_an_obstacle_as_long_as_that_is_worth_it() {
+    let (direct, round) = (13, 13 + 2 + 2);
+    assert_eq!(
+        steps_with_door(None, 5..99),
+        5 + 5 + round,
+        "nothing is known: it takes the way round at once"
+    );
+    assert_eq!(steps_with_door(Some(10.0), 5..9), direct + 3, "the door opens while it waits");
+    assert_eq!(steps_with_door(Some(6.0), 5..99), 12 + 1 + 6 + round, "the door stays closed");
+    assert_eq!(steps_with_door(Some(0.0), 5..99), 5 + 5 + round, "it is not worth waiting");
+    assert_eq!(
+        steps_with_door(Some(10.0), 0..3),
+        direct,
+        "it is closed at first, and open when the robot comes"
+    );
 }

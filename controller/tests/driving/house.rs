@@ -217,6 +217,7 @@ impl House {
             map: &self.map,
             transitions: &self.transitions,
             points: &self.points,
+            obstacles: None,
         }
     }
 

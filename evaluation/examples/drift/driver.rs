@@ -22,6 +22,7 @@ impl Driver {
             map: map.states(),
             transitions: map.transitions(),
             points: map.points(),
+            obstacles: None,
         };
         if permission == Permission::LookAround {
             return self.controller.pause(&input, true);

@@ -16,7 +16,7 @@ pub(crate) use alone::Alone;
 use blocked_probability::Chain;
 use change_probability::change_probability;
 pub(crate) use expected_changes::ExpectedChanges;
-use interfaces::CellState;
+use interfaces::{Cell, CellState, Obstacles};
 pub use look_worth::Undiscovered;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -209,5 +209,18 @@ impl Mapper {
         let by_tile = self.tiles.of_cell(self.frame().cell(index), self.cells.slot(index)?, time_s);
         let predicted = by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone));
         Some(thing.map_or(predicted, |thing| thing.with_clock(predicted, time_s, self.tiles.dates())))
+    }
+}
+
+impl Obstacles for Mapper {
+    fn cells(&self) -> Vec<Cell> {
+        let is_there = |index: &usize| self.cells.state(*index) == CellState::Blocked;
+        let of_things = self.changed().filter(|index| is_there(index) && self.thing(*index).is_some());
+        of_things.map(|index| self.frame().cell(index)).collect()
+    }
+
+    fn patience(&self, cell: Cell, detour: f64) -> f64 {
+        let waiting = self.frame().index(cell).and_then(|index| self.waiting(index, 0.0));
+        waiting.map_or(0.0, |waiting| waiting.patience_s(detour))
     }
 }

@@ -123,6 +123,7 @@ fn server(
     let at = (service, name, mapping);
     match service {
         Service::SaveState
+        | Service::GetPatience
         | Service::GetState
         | Service::GetAvailableStates
         | Service::GetAvailableTransitions

@@ -30,6 +30,7 @@ impl<L: Link> CuriousNode<L> {
                 let loaded = self.deserialize(&asked);
                 self.coded(loaded)
             }
+            (Service::GetPatience, _) => Reply::Trigger(self.patience()),
             (Service::ChangeState, Call::Transition(asked)) => Reply::Success(self.change_state(&asked)),
             (Service::GetState, _) => Reply::State(self.state.labelled()),
             (Service::GetAvailableStates, _) => Reply::States(State::all()),

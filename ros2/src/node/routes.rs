@@ -4,13 +4,18 @@ use super::CuriousNode;
 use crate::link::Link;
 use crate::message::DynamicEdges;
 use crate::parameters::Parameters;
+use crate::service::wire::Trigger;
 use anyhow::{Context, bail};
+use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 use survey::{EdgeOutlook, Outlook, RouteGraph, Travel};
 
 /// The number of edges in a request, so that it fits in one datagram: with CycloneDDS, a longer one is damaged as answers are
 /// (`dds/services.rs`).
 const MAX_EDGES: usize = 100;
+
+/// The number of edges in an answer: it must fit in one datagram.
+const MAX_ANSWERED: usize = 10;
 
 /// The graph, and what is known of its edges.
 pub(super) struct Routes {
@@ -75,6 +80,20 @@ impl Routes {
     }
 }
 
+/// How long to wait at the edges that are most probably blocked, if it is known, before the way round; JSON has `null` for “without end”
+/// and “no way round”.
+fn patience(known: &[Option<EdgeOutlook>]) -> Value {
+    let waits = |edge: &&EdgeOutlook| edge.open < 1.0 && edge.patience_s.is_some();
+    let mut blocked: Vec<_> = known.iter().flatten().filter(waits).collect();
+    blocked.sort_by(|a, b| a.open.total_cmp(&b.open));
+    let rounded = |value: f64| (100.0 * value).round() / 100.0;
+    let row = |edge: &&EdgeOutlook| {
+        let (patience_s, detour_s) = (edge.patience_s.map(rounded), rounded(edge.detour_s));
+        json!({"edge": edge.id, "open": rounded(edge.open), "patience_s": patience_s, "detour_s": detour_s})
+    };
+    blocked.iter().take(MAX_ANSWERED).map(row).collect()
+}
+
 fn request(found: &[EdgeOutlook]) -> DynamicEdges {
     let id = |edge: &EdgeOutlook| edge.id as u16;
     DynamicEdges {
@@ -98,6 +117,13 @@ impl<L: Link> CuriousNode<L> {
         if let Some(edges) = routes.next(&outlook, travel, now, self.parameters.route_update_interval_s) {
             self.link.adjust_edges(edges);
         }
+    }
+
+    /// How long to wait at the edges that are probably blocked, as JSON.
+    pub(super) fn patience(&self) -> Trigger {
+        let none = || "there is no graph of routes: give one by the parameter `route_graph`".to_owned();
+        let text = self.routes.as_ref().map(|routes| patience(&routes.known).to_string());
+        Trigger { is_done: text.is_some(), text: text.unwrap_or_else(none) }
     }
 
     /// Says once in a while that the edges are not adjusted.
@@ -130,6 +156,10 @@ mod tests {
         let loss_m = 1000.0 * (1.0 - open.open) as f32;
         let (mut closed, mut half) = (open.clone(), open);
         (closed.open, half.open, half.id) = (0.05, 0.5, 8);
+        let mut waits = half.clone();
+        (waits.patience_s, waits.detour_s) = (Some(f64::INFINITY), 20.123);
+        let answer = patience(&[None, Some(closed.clone()), Some(waits)]).to_string();
+        assert_eq!(answer, r#"[{"detour_s":20.12,"edge":8,"open":0.5,"patience_s":null}]"#);
         let sent = request(&[closed, half]);
         assert_eq!((sent.closed, sent.opened), (vec![7], vec![8]));
         assert!(

@@ -101,7 +101,7 @@ impl Parts {
         if let Some((_, to_own)) = self.own_frame(args) {
             waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
         }
-        self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
+        Ok(self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)?.patient())
     }
 
     /// What the state of a pilot belongs to, beside the settings.
