@@ -4,8 +4,9 @@
 use super::message::Usable;
 use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Input;
-use flate2::Crc;
+use flate2::CrcReader;
 use std::io::{self, BufReader, Cursor, ErrorKind, Read};
+use std::sync::Arc;
 
 /// The most bytes of a chunk in the file, and unpacked. The tools of ROS write chunks of some megabytes.
 const MAX_PACKED: u64 = 256 << 20;
@@ -18,16 +19,13 @@ pub(super) struct Chunk {
     records: Box<dyn Read + Send>,
     /// The bytes that are still to come.
     pub(super) remaining: u64,
-    /// The checksum so far, if it is compared, and the one that is expected.
-    crc: Option<Crc>,
-    expected_crc: u32,
     /// Whether the file ends within the chunk.
     pub(super) is_cut: bool,
 }
 
 impl Chunk {
-    /// Reads a chunk of `len` bytes, of which the file has `available`.
-    pub(super) fn read(input: &mut dyn Read, len: u64, available: u64, checks_sum: bool) -> Usable<Self> {
+    /// Reads a chunk of `len` bytes, of which the file has `available`. Its checksum is compared before anything in it is used.
+    pub(super) fn read(input: &mut dyn Read, len: u64, available: u64) -> Usable<Self> {
         if len.min(available) > MAX_PACKED {
             return Err(format!("a chunk of {len} bytes; at most {MAX_PACKED} are read"));
         }
@@ -50,49 +48,48 @@ impl Chunk {
         if !is_cut && packed > (bytes.len() - start) as u64 {
             return Err(format!("the records of a chunk have {packed} bytes, but the chunk has {len}"));
         }
-        let mut cursor = Cursor::new(bytes);
-        cursor.set_position(start as u64);
-        let failed = |error: io::Error| error.to_string();
-        let records: Box<dyn Read + Send> = match compression.as_str() {
-            "" => Box::new(cursor),
-            "zstd" => {
-                Box::new(BufReader::new(zstd::stream::read::Decoder::with_buffer(cursor).map_err(failed)?))
+        let bytes: Arc<[u8]> = bytes.into();
+        let records = || unpack(&compression, bytes.clone(), start as u64);
+        if !is_cut && expected_crc != 0 {
+            let mut sum = CrcReader::new(records()?.take(unpacked));
+            io::copy(&mut sum, &mut io::sink()).map_err(|error| error.to_string())?;
+            if sum.crc().sum() != expected_crc {
+                return Err("the checksum of a chunk does not match".to_owned());
             }
-            "lz4" => Box::new(BufReader::new(lz4::Decoder::new(cursor).map_err(failed)?)),
-            other => {
-                return Err(format!("a chunk is compressed with `{other}`; zstd, lz4 and none are read"));
-            }
-        };
-        Ok(Self { records, remaining: unpacked, crc: checks_sum.then(Crc::new), expected_crc, is_cut })
+        }
+        Ok(Self { records: records()?, remaining: unpacked, is_cut })
     }
 
     /// The operation code and the length of the next record; `None` at the end.
     pub(super) fn next_record(&mut self) -> io::Result<Option<(u8, u64)>> {
         if self.remaining == 0 {
-            let is_intact = self.is_cut
-                || self.expected_crc == 0
-                || self.crc.as_ref().is_none_or(|crc| crc.sum() == self.expected_crc);
-            return if is_intact {
-                Ok(None)
-            } else {
-                Err(invalid("the checksum of the chunk does not match"))
-            };
+            return Ok(None);
         }
         let (code, length) = self.next_start()?;
         if length > self.remaining {
-            return Err(invalid("a record is longer than its chunk"));
+            return Err(io::Error::new(ErrorKind::InvalidData, "a record is longer than its chunk"));
         }
         Ok(Some((code, length)))
     }
+}
+
+/// The records of a chunk, which begin at an offset.
+fn unpack(compression: &str, bytes: Arc<[u8]>, start: u64) -> Usable<Box<dyn Read + Send>> {
+    let mut cursor = Cursor::new(bytes);
+    cursor.set_position(start);
+    let failed = |error: io::Error| error.to_string();
+    Ok(match compression {
+        "" => Box::new(cursor),
+        "zstd" => Box::new(BufReader::new(zstd::stream::read::Decoder::with_buffer(cursor).map_err(failed)?)),
+        "lz4" => Box::new(BufReader::new(lz4::Decoder::new(cursor).map_err(failed)?)),
+        other => return Err(format!("a chunk is compressed with `{other}`; zstd, lz4 and none are read")),
+    })
 }
 
 impl Read for Chunk {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         let most = self.remaining.min(to.len() as u64) as usize;
         let count = self.records.read(&mut to[..most])?;
-        if let Some(crc) = &mut self.crc {
-            crc.update(&to[..count]);
-        }
         self.remaining -= count as u64;
         Ok(count)
     }
@@ -123,10 +120,6 @@ impl Records for BufReader<Box<dyn Input>> {
     fn skip(&mut self, length: u64) -> io::Result<()> {
         self.seek_relative(length as i64)
     }
-}
-
-fn invalid(what: &str) -> io::Error {
-    io::Error::new(ErrorKind::InvalidData, what.to_owned())
 }
 
 /// The fields of a record that were not read yet: little-endian numbers, and names after their length. Errors are the rest of a sentence about the record.

@@ -54,7 +54,7 @@ const MAX_SOURCES: usize = 64;
 impl Inventory {
     pub(super) fn of(files: &[BagFile]) -> Result<Self, LogError> {
         let is_wanted = Arc::new(|topic: &Topic| Kind::of_readable(topic).is_some());
-        let mut messages = Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: true });
+        let mut messages = Messages::new(files.to_vec(), Selection { is_wanted });
         let mut inventory = Self::default();
         while let Some(message) = messages.next_message()? {
             inventory.order.note(&message);

@@ -50,6 +50,8 @@ pub(super) struct McapFile {
     is_complete: bool,
     /// Why the file ends too early.
     missing: Option<String>,
+    /// The number of chunks that are left out, in whole or in part, and why the first one is.
+    damaged: Option<(usize, String)>,
     is_over: bool,
 }
 
@@ -65,6 +67,8 @@ struct Content {
 enum Stop {
     /// The file ends within it.
     Cut,
+    /// Its bytes cannot be read.
+    Damaged(String),
     Invalid(String),
 }
 
@@ -72,7 +76,7 @@ impl From<io::Error> for Stop {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             ErrorKind::UnexpectedEof => Self::Cut,
-            _ => Self::Invalid(error.to_string()),
+            _ => Self::Damaged(error.to_string()),
         }
     }
 }
@@ -97,6 +101,7 @@ impl McapFile {
             content,
             is_complete,
             missing: None,
+            damaged: None,
             is_over: false,
         })
     }
@@ -105,11 +110,12 @@ impl McapFile {
     fn step(&mut self) -> Result<Option<Message>, Stop> {
         if let Some(chunk) = self.chunk.take() {
             let is_cut = chunk.is_cut;
-            return self.step_in_chunk(chunk).map_err(|stop| match stop {
-                _ if is_cut => Stop::Cut,
-                Stop::Cut => Stop::Invalid("the records of a chunk end too early".to_owned()),
-                invalid => invalid,
-            });
+            return match self.step_in_chunk(chunk) {
+                Err(_) if is_cut => Err(Stop::Cut),
+                Err(Stop::Cut) => self.leave_out("the records of a chunk end too early".to_owned()),
+                Err(Stop::Damaged(what)) => self.leave_out(what),
+                found => found,
+            };
         }
         self.record = self.next;
         let (code, length) = self.input.next_start()?;
@@ -126,12 +132,11 @@ impl McapFile {
             }
             CHUNK => {
                 let available = self.size - (self.record + 9).min(self.size);
-                let chunk =
-                    Chunk::read(&mut self.input, length, available, self.content.selection.checks_sums);
-                let chunk = chunk.map_err(|what| match length > available {
-                    true => Stop::Cut,
-                    false => Stop::Invalid(what),
-                })?;
+                let chunk = match Chunk::read(&mut self.input, length, available) {
+                    Ok(chunk) => chunk,
+                    Err(_) if length > available => return Err(Stop::Cut),
+                    Err(what) => return self.leave_out(what),
+                };
                 self.unpacked = self.unpacked.saturating_add(chunk.remaining);
                 let most = max_chunk_bytes(self.size);
                 if self.unpacked > most {
@@ -156,6 +161,15 @@ impl McapFile {
         let found = self.content.take(&mut chunk, code, length)?;
         self.chunk = Some(chunk);
         Ok(found)
+    }
+
+    /// The rest of the chunk is left out: it is damaged.
+    fn leave_out(&mut self, what: String) -> Result<Option<Message>, Stop> {
+        let (count, _) =
+            self.damaged.get_or_insert_with(|| (0, format!("the first one at byte {}: {what}", self.record)));
+        *count += 1;
+        self.input.seek(SeekFrom::Start(self.next))?;
+        Ok(None)
     }
 
     fn invalid(&mut self, what: String) -> LogError {
@@ -278,13 +292,18 @@ impl MessageSource for McapFile {
                     return Err(self.invalid(what.to_owned()));
                 }
                 Err(Stop::Cut) => self.cut(),
-                Err(Stop::Invalid(what)) => return Err(self.invalid(what)),
+                Err(Stop::Damaged(what) | Stop::Invalid(what)) => return Err(self.invalid(what)),
             }
         }
         Ok(None)
     }
 
     fn report(&self) -> (Vec<Arc<Topic>>, Option<String>) {
-        (self.content.channels.values().map(|channel| channel.topic.clone()).collect(), self.missing.clone())
+        let damaged = self.damaged.as_ref().map(|(count, first)| {
+            format!("{} is damaged: {count} chunks are left out, {first}", self.content.file)
+        });
+        let missing: Vec<String> = damaged.into_iter().chain(self.missing.clone()).collect();
+        let topics = self.content.channels.values().map(|channel| channel.topic.clone()).collect();
+        (topics, Some(missing.join("; ")).filter(|missing| !missing.is_empty()))
     }
 }

@@ -22,8 +22,6 @@ pub(super) type Usable<T> = Result<T, String>;
 pub(super) struct Selection {
     /// Whether the messages of a topic are wanted; others are skipped.
     pub(super) is_wanted: Arc<dyn Fn(&Topic) -> bool + Send + Sync>,
-    /// Whether checksums are compared: once is enough, and it takes a third of the time of a pass.
-    pub(super) checks_sums: bool,
 }
 
 /// A message.

@@ -129,8 +129,7 @@ impl Merged {
         is_wanted: impl Fn(&Topic) -> bool + Send + Sync + 'static,
         by_topic: &[Arc<Topic>],
     ) -> Self {
-        let stream =
-            |is_wanted| (Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: false }), None);
+        let stream = |is_wanted| (Messages::new(files.to_vec(), Selection { is_wanted }), None);
         if by_topic.is_empty() {
             return Self { streams: vec![stream(Arc::new(is_wanted))] };
         }

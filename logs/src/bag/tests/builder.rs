@@ -27,6 +27,7 @@ pub(super) const TF: &str = "tf2_msgs/msg/TFMessage";
 #[derive(Clone, Default)]
 pub(super) struct Builder {
     pub(super) messages: Vec<(String, String, u64, Vec<u8>)>,
+    pub(super) has_sums: bool,
     pub(super) encoding: Option<String>,
 }
 
@@ -103,11 +104,11 @@ impl Builder {
         self.tf("/tf_static", 0.0, &[transform(0.0, "base_link", "laser", pose(0.2, 0.0, 0.0))])
     }
 
-    /// An MCAP file in which the checksums are not tested, so that damage reaches our parser.
+    /// An MCAP file, mostly without checksums, so that damage reaches our parser.
     pub(super) fn mcap(&self, options: WriteOptions) -> Vec<u8> {
         let mut writer = options
             .profile("ros2")
-            .calculate_chunk_crcs(false)
+            .calculate_chunk_crcs(self.has_sums)
             .create(Cursor::new(Vec::new()))
             .expect("a writer to memory");
         let encoding = self.encoding.as_deref().unwrap_or("cdr");
