@@ -25,6 +25,8 @@ const MESSAGE_HEADER: usize = 22;
 const MAX_RECORD: u64 = 64 << 20;
 /// The bytes of a schema or a channel that are read: its numbers and names. The rest describes messages that we know.
 const MAX_DEFINITION_BYTES: u64 = 2 * MAX_NAME_BYTES as u64 + 16;
+/// The bytes of a footer after its start: where the summary begins, and its parts, and a checksum.
+const FOOTER_BYTES: u64 = 20;
 /// A record that claims more bytes is no record that was cut off, but nonsense.
 const MAX_CLAIMED: u64 = 1 << 40;
 
@@ -165,11 +167,31 @@ impl McapFile {
 
     /// The rest of the chunk is left out: it is damaged.
     fn leave_out(&mut self, what: String) -> Result<Option<Message>, Stop> {
+        if self.damaged.is_none() && self.is_complete {
+            self.read_summary().ok(); // the chunk may have had definitions
+        }
         let (count, _) =
             self.damaged.get_or_insert_with(|| (0, format!("the first one at byte {}: {what}", self.record)));
         *count += 1;
         self.input.seek(SeekFrom::Start(self.next))?;
         Ok(None)
+    }
+
+    /// Takes the schemas and channels that stand at the end of the file once more.
+    fn read_summary(&mut self) -> Result<(), Stop> {
+        self.input.seek(SeekFrom::Start(self.size.saturating_sub(FOOTER_BYTES + MAGIC.len() as u64)))?;
+        let mut start = [0; 8];
+        self.input.read_exact(&mut start)?;
+        self.input.seek(SeekFrom::Start(u64::from_le_bytes(start).max(MAGIC.len() as u64)))?;
+        loop {
+            match self.input.next_start()? {
+                (code @ (SCHEMA | CHANNEL), length) => {
+                    self.content.take(&mut self.input, code, length)?;
+                }
+                (FOOTER, _) => return Ok(()),
+                (_, length) => self.input.skip(length)?,
+            }
+        }
     }
 
     fn invalid(&mut self, what: String) -> LogError {
