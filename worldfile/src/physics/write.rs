@@ -49,7 +49,7 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
         let thing = obstacle.part.map(|part| &spec.obstacles[part.thing]).filter(|thing| *thing != obstacle);
         table("\n[[obstacle]]\n", self::obstacle(obstacle, thing)?);
         if let Some(schedule) = obstacle.schedule().filter(|_| thing.is_none()) {
-            table("\n[obstacle.schedule]\n", write_schedule(schedule)?);
+            table("\n[obstacle.schedule]\n", write_schedule(schedule));
         }
     }
     for robot in &spec.robots {

@@ -3,7 +3,6 @@
 mod block;
 mod door;
 
-use crate::files::Files;
 use crate::physics::kind::{KindOf, kind_of};
 use crate::physics::space::{MAX_TIME_S, Space, inside, upright};
 use crate::reader::{Table, valid};
@@ -47,8 +46,6 @@ struct Obstacle<'a> {
     table: &'a Table<'a>,
     name: &'a str,
     space: &'a Space,
-    /// The files beside the file.
-    files: &'a dyn Files,
     /// The obstacles before it in the file.
     before: &'a [(&'a Table<'a>, ObstacleSpec)],
 }
@@ -57,12 +54,11 @@ struct Obstacle<'a> {
 pub(super) fn obstacle<'a>(
     table: &'a Table<'a>,
     space: &'a Space,
-    files: &'a dyn Files,
     before: &'a [(&'a Table<'a>, ObstacleSpec)],
 ) -> Option<ObstacleSpec> {
     let (name, tag) = (table.name(), table.tag());
     let kind = kind_of(table, &KINDS, "an obstacle")?;
-    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, files, before };
+    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, before };
     let spec = match kind {
         "block" => obstacle.block(),
         "hinged_door" | "sliding_door" => obstacle.door(kind == "hinged_door"),
@@ -103,7 +99,7 @@ impl Obstacle<'_> {
 
     /// The schedule of the obstacle, `Some(None)` if it has none. `others` are the keys that a schedule replaces.
     fn schedule(&self, others: &[&'static str]) -> Option<Option<Schedule>> {
-        let schedule = schedule(self.table, self.name, self.files)?;
+        let schedule = schedule(self.table, self.name)?;
         if schedule.is_some() {
             self.table.has_none_of(others, "schedule", self.name)?;
         }

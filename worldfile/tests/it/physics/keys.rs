@@ -86,7 +86,6 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
         (_, "max_left_mps" | "max_left_acceleration_mps2") => format!("kind = \"omni\"\n{good}"),
         (_, "wheelbase_m" | "max_steer_deg") => format!("kind = \"car\"\nwheelbase_m = 1.0\n{good}"),
         (_, "slide_m") => good.replace("hinged", "sliding"),
-        ("`obstacle.schedule`", "one_means") => "events = \"events.csv\"".to_owned(),
         (_, "switches_s") => good.replace("random", "scripted").replace("closed_s = 1.0\nopen_s = 1.0", ""),
         (_, "place") => {
             let thing = format!("{good}\nschedule = {{ free_s = 9.0, blocked_s = 9.0 }}\n");
@@ -131,8 +130,7 @@ fn world(heading: &str, changed: &str) -> String {
 
 fn parse(text: &str) -> Result<String, String> {
     let dot = (PathBuf::from("dot.pgm"), b"P2 1 1 255 0".to_vec());
-    let events = (PathBuf::from("events.csv"), b"time_s,state\n0,1\n5,0\n".to_vec());
-    let spec = worldfile::physics::parse_fleet_with("w.toml", text, &BTreeMap::from([dot, events]));
+    let spec = worldfile::physics::parse_fleet_with("w.toml", text, &BTreeMap::from([dot]));
     spec.map(|spec| format!("{spec:?}")).map_err(|error| error.to_string())
 }
 
