@@ -10,7 +10,7 @@ use crate::schedule::schedule;
 use calendar::Schedule;
 use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle, ThingPart};
 
-pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
+pub(super) const KEYS: &str = "name, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
                                disappears_s, part_of, place, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
                                switches_s, move_s, starts_open, schedule, waits_for_robots";
@@ -18,7 +18,7 @@ pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, 
 /// The largest number of places of a thing.
 const MAX_PLACES: u32 = 100;
 
-/// The kinds of obstacles; all have a name, a tag and a kind as well.
+/// The kinds of obstacles; all have a name and a kind as well.
 const KINDS: [KindOf; 5] = [
     (
         "fixed",
@@ -56,7 +56,7 @@ pub(super) fn obstacle<'a>(
     space: &'a Space,
     before: &'a [(&'a Table<'a>, ObstacleSpec)],
 ) -> Option<ObstacleSpec> {
-    let (name, tag) = (table.name(), table.tag());
+    let name = table.name();
     let kind = kind_of(table, &KINDS, "an obstacle")?;
     let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, before };
     let spec = match kind {
@@ -65,7 +65,7 @@ pub(super) fn obstacle<'a>(
         "box" => obstacle.pushed(),
         _ => obstacle.fixed(),
     };
-    table.sound(ObstacleSpec { tag, name: name?, ..spec? })
+    table.sound(ObstacleSpec { name: name?, ..spec? })
 }
 
 impl Obstacle<'_> {

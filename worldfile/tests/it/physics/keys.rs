@@ -73,7 +73,6 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("`robot.behavior`", "robot.behavior", "kind = \"driven\""),
     ("`robot.bumper`", "robot.bumper", "sectors = 4"),
     ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
-    ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
 
 /// The additional keys that a key needs, if the valid ones do not include them.
@@ -103,15 +102,8 @@ fn world(heading: &str, changed: &str) -> String {
     for (known, table, good) in GOOD {
         // These exist only where they are asked for.
         let is_optional = table.starts_with("obstacle")
-            || [
-                "floor_plan",
-                "robot.patrol",
-                "robot.odometry.jump",
-                "robot.bumper",
-                "robot.sonar",
-                "robot.fiducial",
-            ]
-            .contains(table);
+            || ["floor_plan", "robot.patrol", "robot.odometry.jump", "robot.bumper", "robot.sonar"]
+                .contains(table);
         let holds_it = *known == "`obstacle`" && heading == "`obstacle.schedule`";
         if (is_optional || table_of(heading) == *table) && *known != heading && !holds_it {
             continue;
