@@ -144,7 +144,7 @@ fn a_log_with_a_silent_hour_shows_what_two_logs_show() {
         (bag(folder.path(), "early", &early, 0.0), 0.0),
         (bag(folder.path(), "late", &late, days), days),
     ]);
-    let note = "the laser was silent once for more than 8 s, 60 min in all: this time counts as not observed";
+    let note = "the laser was silent once for more than 8 s, 3580 s in all: this time counts as not observed";
     assert_eq!(one.logs()[0].entry.notes, [note]);
     assert!(two.logs().iter().all(|log| log.entry.notes.is_empty()));
     let [one, two] = [&one, &two].map(|survey| survey.mapper().unwrap());
