@@ -4,7 +4,7 @@
 //! A time is in s since a Monday, 0:00, in local civil time.
 //!
 //! ```
-//! use calendar::{Changes, Habit, Hours, Schedule, Stays, WEEK_S, time_of_week_s};
+//! use calendar::{Habit, Hours, Schedule, Stays, WEEK_S, time_of_week_s};
 //! use interfaces::{Purpose, RandomStream};
 //!
 //! let mut hours = Hours::never();
@@ -14,7 +14,7 @@
 //!     active: [Stays::of_mean(1200.0), Stays::of_mean(600.0)],
 //!     quiet: [Stays::of_mean(300.0), Stays::of_mean(1e6)],
 //! };
-//! let door = Schedule { changes: Changes::Habit(habit), starts_blocked: true };
+//! let door = Schedule { habit, starts_blocked: true };
 //! let starts_s = time_of_week_s("Mon 7:00")?;
 //! let mut timeline = door.timeline(starts_s, RandomStream::new(7, Purpose::Thing(0)));
 //! let mut openings = 0;
@@ -26,7 +26,6 @@
 mod drawn;
 mod habit;
 mod hours;
-mod recorded;
 mod schedule;
 mod text;
 mod timeline;
@@ -34,7 +33,6 @@ mod timeline;
 pub use drawn::{Kind, Range, ThingKind, log_uniform};
 pub use habit::{Habit, PHASES, Stays};
 pub use hours::{DAY_S, HOUR_S, Hours, SLOT_S, WEEK_S};
-pub use recorded::{Change, Recording};
-pub use schedule::{Changes, Schedule};
+pub use schedule::Schedule;
 pub use text::{moment, time_of_week_s};
 pub use timeline::Timeline;

@@ -11,7 +11,8 @@ cd "$(dirname "$0")/../.."
 row() {
   local variant=$1
   shift
-  target/debug/examples/drift "rows=$new" "table=$table" "variant=$variant" "$@" > /dev/null
+  target/debug/examples/drift row=1 "table=$table" "variant=$variant" "$@" | tail -n "$lines" >> "$new"
+  lines=1
 }
 
 houses() {
@@ -64,6 +65,7 @@ shelves() {
 for table in "$@"; do
   new=$(mktemp)
   echo "# $(git show -s --format='commit %h of %cs'), docs/results/localization.sh $table" > "$new"
+  lines=2 # the first row has the names of the columns
   "$table"
   mv "$new" "docs/results/localization_$table.csv"
 done

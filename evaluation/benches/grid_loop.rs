@@ -16,11 +16,10 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use generated::generated;
 use interfaces::{CellReading, Purpose, RandomStream, Step, Transition};
-use mapper::{Mapper, MapperSettings, ReadingError};
+use mapper::{Mapper, MapperSettings};
 use nalgebra::Isometry2;
-use robot::{Autonomous, Belief, ExactPoses, GoalSelector, Pilot, Robot, explore};
+use robot::{Autonomous, Belief, ExactPoses, GoalSelector, Pilot, Robot};
 use sim::grid::{GridSpec, GridWorld};
-use std::ops::ControlFlow;
 
 const STEPS: usize = 20_000;
 const SEED: u64 = 1;
@@ -61,13 +60,11 @@ impl<P: Pilot<Command = Step>> Run<P> {
     }
 
     fn run(mut self) -> Self {
-        let mut step = 0;
-        explore(&mut self.world, &mut self.robot, |_, robot, _| -> Result<_, ReadingError> {
-            robot.pilot.take_messages();
-            step += 1;
-            Ok(if step < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-        })
-        .expect("a grid world's readings make sense");
+        let mut command = None;
+        for _ in 0..STEPS {
+            robot::turn(&mut self.world, &mut self.robot, &mut command).expect("its readings make sense");
+            self.robot.pilot.take_messages();
+        }
         self
     }
 }

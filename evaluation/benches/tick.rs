@@ -12,10 +12,8 @@ use evaluation::observer::Observer;
 use evaluation::observer::map_hash;
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{LaserReading, World};
-use mapper::ReadingError;
-use robot::{Autonomous, Pilot, Robot, explore};
+use robot::{Autonomous, Pilot, Robot};
 use sim::physics::PhysicsWorld;
-use std::ops::ControlFlow;
 
 fn main() {
     divan::main();
@@ -47,15 +45,16 @@ impl Run {
 
     /// Runs until `end_s`, with the metrics or without.
     fn explore(&mut self, end_s: f64, mut observer: Option<Observer>) {
-        explore(&mut self.world, &mut self.robot, |world, robot, turn| -> Result<_, ReadingError> {
+        let (mut command, mut time_s) = (None, 0.0);
+        while time_s < end_s {
+            let turn = robot::turn(&mut self.world, &mut self.robot, &mut command);
+            let turn = turn.expect("the physics world gives readings that are valid");
             match &mut observer {
-                Some(observer) => observer.observe(world, robot, turn),
-                None => drop(robot.pilot.take_messages()),
+                Some(observer) => observer.observe(&self.world, &mut self.robot, &turn),
+                None => drop(self.robot.pilot.take_messages()),
             }
-            let is_over = turn.reading.time_s >= end_s;
-            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })
-        .expect("the physics world gives readings that are valid");
+            time_s = turn.reading.time_s;
+        }
     }
 }
 

@@ -135,7 +135,6 @@ fn house(seed: u64) -> (WorldSpec, Vec<Point2<f64>>) {
         name: format!("post {number}"),
         shape: Rectangle::around(*at, Vector2::repeat(POST_M), 0.3),
         motion: Motion::Fixed,
-        tag: None,
         appears_s: None,
         disappears_s: None,
         part: None,

@@ -6,7 +6,7 @@ use crate::metrics::{
     RateScores, StateScores,
 };
 use crate::scheduled_things::ScheduledScores;
-use results::numbers::percent;
+use results::numbers::{duration, percent};
 use robot::{DayTotals, GoalCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -134,14 +134,10 @@ impl fmt::Display for Summary {
             "interrupted" => ", interrupted",
             _ => "",
         };
-        let simulated = match simulated_s {
-            short if *short < 60.0 => format!("{short:.1} simulated seconds"),
-            long if *long < 86_400.0 => format!("{:.1} simulated minutes", long / 60.0),
-            days => format!("{:.1} simulated days", days / 86_400.0),
-        };
+        let simulated = duration(*simulated_s);
         writeln!(
             f,
-            "{drive} in {world}{ended}: {simulated} in {wall_s:.1} s ({real_time_factor:.0} x real time)"
+            "{drive} in {world}{ended}: {simulated} simulated in {wall_s:.1} s ({real_time_factor:.0} x real time)"
         )?;
         self.results.fmt(f)
     }

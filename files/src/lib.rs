@@ -10,7 +10,7 @@ mod unfinished;
 
 pub use folder::{RunFolder, is_below};
 pub use read::{open, read, read_text, within};
-pub use unfinished::{Proof, UnfinishedFile, check_output, open_to_append, replace};
+pub use unfinished::{Proof, UnfinishedFile, check_output, replace};
 
 use disk::Folder;
 use std::ffi::OsString;

@@ -190,17 +190,6 @@ pub fn replace(file: &Path, by: &Path, proof: Proof) -> Result<(), OutputError> 
     folder.replace(&name, by)
 }
 
-/// Opens a file to which lines are appended, with what it has; it is made unless it exists. The caller checks
-/// that the lines are its own.
-///
-/// # Errors
-///
-/// When the file cannot be written, or is a link.
-pub fn open_to_append(path: &Path) -> io::Result<File> {
-    let (folder, name) = Folder::of(path)?;
-    folder.file_to_write(&name)
-}
-
 fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), OutputError> {
     let Some(proof) = proof else { return check_file(folder, name) };
     if is_of_a_run(folder) {

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! [`Robot::step`] is this line: simulators, grid worlds, logs, live robots, Gymnasium and Python give readings and take
-//! commands. [`explore`] is the loop around it for a [`World`]. [`state`] saves what was learned and
+//! commands. [`turn`] is one turn of the loop around it for a [`World`]. [`state`] saves what was learned and
 //! where a run stopped, so that another run goes on from there.
 
 mod autonomous;
@@ -33,7 +33,6 @@ pub use tour::Tour;
 
 use interfaces::{Reading, World};
 use mapper::ReadingError;
-use std::ops::ControlFlow;
 
 /// One turn of the loop: the world executes the last command, and the robot processes the next reading. The next command waits in
 /// `command`, so that a run can be saved between two turns.
@@ -56,33 +55,4 @@ where
     let turn = robot.step(world.sense())?;
     *command = Some(turn.command.clone());
     Ok(turn)
-}
-
-/// Runs the robot in `world` until `observe` breaks the loop. Returns the last command, which the world has not executed:
-/// to go on, let the world execute it first.
-///
-/// # Errors
-///
-/// When the mapper refuses a reading, or when `observe` fails.
-pub fn explore<W, P, E>(
-    world: &mut W,
-    robot: &mut Robot<W::Reading, P>,
-    mut observe: impl FnMut(
-        &W,
-        &mut Robot<W::Reading, P>,
-        &Turn<W::Reading, W::Command>,
-    ) -> Result<ControlFlow<()>, E>,
-) -> Result<W::Command, E>
-where
-    W: World<Reading: Reading, Command: Clone>,
-    P: Pilot<Command = W::Command>,
-    E: From<ReadingError>,
-{
-    let mut command = None;
-    loop {
-        let turn = turn(world, robot, &mut command)?;
-        if observe(world, robot, &turn)?.is_break() {
-            return Ok(turn.command);
-        }
-    }
 }

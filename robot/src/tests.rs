@@ -1,7 +1,7 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
 use crate::{
-    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot, Robot, explore,
+    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot, Robot,
 };
 use agent::{Agent, AgentSettings, Features, Goal, Policy, Travel};
 use controller::{CellDrive, Controller, Driver};
@@ -12,7 +12,6 @@ use localizer::{Correction, PoseEstimate, PoseState};
 use mapper::{Mapper, MapperSettings, NoReturn, ReadingError, ScanFilter, ScanFilterSettings};
 use nalgebra::{Isometry2, Matrix3, Point2};
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
 /// What the parts were asked, in order.
@@ -210,13 +209,9 @@ fn explorer(policy: &str) -> Explorer {
 
 /// The commands of some turns.
 fn commands(world: &mut Room, robot: &mut Explorer, turns: usize) -> Vec<Step> {
-    let mut commands = Vec::new();
-    let last = explore(world, robot, |_, _, turn| -> Result<_, ReadingError> {
-        commands.push(turn.command);
-        let is_over = commands.len() == turns;
-        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-    });
-    world.act(&last.unwrap());
+    let mut command = None;
+    let commands = (0..turns).map(|_| crate::turn(world, robot, &mut command).unwrap().command).collect();
+    command.iter().for_each(|last| world.act(last));
     commands
 }
 

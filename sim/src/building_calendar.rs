@@ -1,8 +1,7 @@
 //! The calendar of a generated building: the hours in which it is active, and the schedules of its things.
 
 use calendar::{
-    Changes, HOUR_S, Habit, Hours, Kind, PHASES, Range, Schedule, Stays, ThingKind, Timeline, WEEK_S,
-    log_uniform,
+    HOUR_S, Habit, Hours, Kind, PHASES, Range, Schedule, Stays, ThingKind, Timeline, WEEK_S, log_uniform,
 };
 use interfaces::{Purpose, RandomStream};
 use rand::RngExt;
@@ -74,10 +73,7 @@ impl BuildingCalendar {
         let quiet = if self.change_s().is_finite() { later } else { active };
         let [free_s, blocked_s] = active.map(|stays| stays.mean_s());
         let starts_blocked = self.rng.bernoulli(blocked_s / (free_s + blocked_s));
-        Schedule {
-            changes: Changes::Habit(Habit { hours: self.hours.clone(), active, quiet }),
-            starts_blocked,
-        }
+        Schedule { habit: Habit { hours: self.hours.clone(), active, quiet }, starts_blocked }
     }
 
     /// A schedule whose state at the start, Monday 0:00, is that of a thing that has done so for weeks.
@@ -93,7 +89,7 @@ impl BuildingCalendar {
             *stays = Stays { short_s, long_s, long_share: (long_share * 1000.0).round() / 1000.0 };
         }
         let starts_blocked = self.is_blocked_at_start(&habit);
-        Schedule { changes: Changes::Habit(habit), starts_blocked }
+        Schedule { habit, starts_blocked }
     }
 
     fn is_blocked_at_start(&mut self, habit: &Habit) -> bool {

@@ -1,13 +1,14 @@
 //! The parts of Stage that this simulator does not have, so that messages can name them.
 
 /// Kinds of entities that are left out, and why.
-const KINDS: [(&str, &str); 9] = [
+const KINDS: [(&str, &str); 10] = [
     ("camera", "there are no cameras here"),
     ("blobfinder", "nothing here sees colors"),
     (
         "bumper",
         "Stage's are short beams that may lie anywhere; `[robot.bumper]` is a ring that feels touches",
     ),
+    ("fiducial", "nothing here finds tags"),
     ("gripper", "there are no grippers here; its body is left out too"),
     ("actuator", "there are no actuators here; it and what it carries are left out"),
     ("charger powerpack power", "there is no energy here"),
@@ -31,7 +32,7 @@ const KEYS: [(&str, &str); 12] = [
         "watts give_watts take_watts joules joules_capacity kjoules kjoules_capacity give input",
         "there is no energy here: batteries are never empty",
     ),
-    ("fiducial_key", "a fiducial finder here finds every tag, whatever its key"),
+    ("fiducial_return fiducial_key", "nothing here finds tags"),
     ("odom", "Stage itself no longer knows this key"),
     ("scount ssize sview sraycount spose spose3", "Stage itself no longer knows this key; use `sensor( … )`"),
     ("view", "Stage itself knows no such key; use `range` and `fov`"),

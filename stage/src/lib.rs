@@ -27,11 +27,9 @@
 //! | the body of a robot | its convex outline, or a disc if the body is one or does not hold the point that the robot turns about |
 //! | `ranger` with `sensor`s, and the older `laser` | a laser; a `sensor` of one sample is a sonar: a cone as wide as its `fov` |
 //! | `samples`, `fov`, `range`, `range_min`, `range_max`, `noise`, `update_interval` | of a laser or a sonar |
-//! | `fiducial` | a fiducial finder, as far as it tells tags apart (`range_max_id`) |
-//! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
 //! | `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
-//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is listed in a warning. Bumpers
+//! Everything else (windows, cameras, blob and fiducial finders, bumpers, grippers, energy, …) is listed in a warning. Bumpers
 //! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring
 //! around the robot that detect contacts.
 
@@ -84,8 +82,6 @@ pub struct StageWall {
     pub place: String,
     /// The pieces of the model, including those of the plan.
     pub rectangles: Vec<Rectangle>,
-    /// The tag that fiducial finders detect; a wall with a tag is one rectangle.
-    pub tag: Option<u32>,
     at: Span,
 }
 
@@ -115,10 +111,6 @@ pub struct StageRobot {
     pub lasers: Vec<StageSensor>,
     /// The sonars of the robot. In Stage a sonar is a single ray.
     pub sonars: Vec<StageSensor>,
-    /// The fiducial finder; `None` if there is none.
-    pub fiducial: Option<StageSensor>,
-    /// The tag of the robot itself.
-    pub tag: Option<u32>,
     /// The mass, kg.
     pub mass_kg: Option<f64>,
     /// Whether its controller is Stage's `wander`.
@@ -158,14 +150,14 @@ fn fastest([least, most]: [f64; 2]) -> f64 {
     most.max(-least)
 }
 
-/// A laser, a sonar or a fiducial finder.
+/// A laser or a sonar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageSensor {
     /// The place in the file, for example `sick.inc:3`.
     pub place: String,
     /// The pose of the sensor in the frame of the robot, m and rad.
     pub mount: Isometry2<f64>,
-    /// The number of beams of a laser; 1 for other sensors.
+    /// The number of beams of a laser; 1 for a sonar.
     pub beams: usize,
     /// The angle of the field of view, rad; for a sonar, the angle of the cone.
     pub fov_rad: f64,
@@ -193,8 +185,7 @@ impl StageRobot {
     /// All sensors, each with what it is.
     fn sensors(&self) -> impl Iterator<Item = (&'static str, &StageSensor)> {
         let lasers = self.lasers.iter().map(|sensor| ("laser", sensor));
-        let sonars = self.sonars.iter().map(|sensor| ("sonar", sensor));
-        lasers.chain(sonars).chain(self.fiducial.iter().map(|sensor| ("fiducial finder", sensor)))
+        lasers.chain(self.sonars.iter().map(|sensor| ("sonar", sensor)))
     }
 
     /// The area that the robot covers in this simulator at its start.

@@ -1,26 +1,20 @@
 //! Models: their names, their bodies, and those that are walls.
 
-use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageWall, left_out};
 use crate::body::Body;
 use crate::world::Builder;
 use nalgebra::Isometry2;
-use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
 
 /// The length and the width of a model, where the file gives none, m.
 pub(super) const DEFAULT_SIZE_M: f64 = 0.1;
-/// The pose of a box is its middle if it is as near as this, m.
-const NEAR_M: f64 = 1e-6;
 
 /// A model at its pose.
 pub(super) struct Placed {
     pub(super) name: String,
     /// Whether robots bump into it or lasers see it.
     pub(super) is_solid: bool,
-    /// The tag of the model, and the place of the tag in the file.
-    pub(super) tag: Option<(u32, Span)>,
     pub(super) at: Isometry2<f64>,
     pub(super) body: Body,
 }
@@ -45,7 +39,6 @@ impl Builder<'_, '_> {
             let what = "the `mass` of what is no robot changes nothing";
             self.sources.add(Severity::Note, place, what, help);
         }
-        let tag = self.tag(model);
         let at = on * self.pose(model, "pose");
         let size_m = self.size_m(model, default_size_m);
         let body = self.body(model, &at, size_m, has_box);
@@ -58,7 +51,7 @@ impl Builder<'_, '_> {
             };
             self.sources.warning(model.place, what, help);
         }
-        Placed { name, is_solid: collides || is_seen, tag, at, body }
+        Placed { name, is_solid: collides || is_seen, at, body }
     }
 
     /// A name that no other model has.
@@ -94,7 +87,7 @@ impl Builder<'_, '_> {
                 self.wall(model, on);
             }
             "model" | "puck" => self.wall(model, on),
-            "ranger" | "laser" | "fiducial" => {
+            "ranger" | "laser" => {
                 let what = "a sensor that stands alone is left out";
                 self.left_out(model, what, "only robots have sensors here");
             }
@@ -103,18 +96,12 @@ impl Builder<'_, '_> {
     }
 
     fn wall(&mut self, model: &Entity, on: &Isometry2<f64>) {
-        let placed = self.placed(model, on, DEFAULT_SIZE_M, true);
-        let Placed { name, tag, at, body, .. } = placed;
+        let Placed { name, is_solid, at, body } = self.placed(model, on, DEFAULT_SIZE_M, true);
         if let Some((_, place)) = self.text(model, "ctrl") {
             let what = "controllers of Stage cannot be loaded";
             self.sources.warning(place, what, "this thing stands still");
         }
-        let is_wall = placed.is_solid && !body.is_empty();
-        if let Some((_, place)) = tag.filter(|_| !is_wall) {
-            let help = "only what robots bump into has a tag here";
-            self.sources.warning(place, "the tag of a thing without a body is left out", help);
-        }
-        if is_wall {
+        if is_solid && !body.is_empty() {
             let (rectangles, off_m) = body.rectangles();
             if off_m == f64::INFINITY {
                 let help = "a block without area is left out; give it three corners that are not on a line";
@@ -124,11 +111,8 @@ impl Builder<'_, '_> {
                 let help = "walls here are made of rectangles, which do not fill a corner of less than 90°";
                 self.sources.warning(model.place, what, help);
             }
-            if let Some((_, place)) = tag {
-                self.tagged.push((self.walls.len(), at.translation.vector.into(), place));
-            }
-            let (place, tag) = (self.sources.name(model.place), tag.map(|(tag, _)| tag));
-            self.walls.push(StageWall { name, place, rectangles, tag, at: model.place });
+            let place = self.sources.name(model.place);
+            self.walls.push(StageWall { name, place, rectangles, at: model.place });
         }
         for part in model.carried() {
             self.add(part, &at, false);
@@ -162,38 +146,6 @@ impl Builder<'_, '_> {
     pub(super) fn left_out(&mut self, entity: &Entity, what: &str, why: &str) {
         self.sources.warning(entity.place, what, why);
         use_all(entity);
-    }
-
-    /// Leaves the tags of all walls out that cannot be obstacles here, which are one rectangle with the tag in
-    /// its middle and lie outside of walls.
-    pub(super) fn check_tags(&mut self) {
-        let pieces = self.walls.iter().enumerate();
-        let pieces = pieces.flat_map(|(wall, of)| of.rectangles.iter().map(move |piece| (wall, *piece)));
-        let pieces: Vec<(usize, Rectangle)> = pieces.collect();
-        let tree = BoxTree::new(pieces.iter().map(|(_, piece)| piece.bounds()));
-        for (index, position, place) in &self.tagged {
-            let (what, help) = match self.walls[*index].rectangles.as_slice() {
-                [shape] if (shape.pose.translation.vector - position.coords).norm() > NEAR_M => {
-                    let help = "here a tag is in the middle of its thing: give it no `origin`";
-                    ("the tag of a thing that does not lie about its pose is left out", help)
-                }
-                [shape] => {
-                    let overlaps = |other: &Rectangle| shape.overlaps(other);
-                    let is_another = |i: usize| pieces[i].0 != *index && overlaps(&pieces[i].1);
-                    if tree.first_below(usize::MAX, overlaps, is_another).is_none() {
-                        continue;
-                    }
-                    let what = "the tag of a thing that lies in another one is left out";
-                    (what, "here what has a tag lies by itself")
-                }
-                _ => {
-                    let help = "here a tag is that of one rectangle: give the thing no bitmap and no blocks";
-                    ("the tag of a thing of several pieces is left out", help)
-                }
-            };
-            self.walls[*index].tag = None;
-            self.sources.warning(*place, what, help);
-        }
     }
 }
 

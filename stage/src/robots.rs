@@ -15,9 +15,9 @@ const MAX_GAIN: f64 = 0.01;
 impl Builder<'_, '_> {
     /// Adds a robot with all that it carries.
     pub(super) fn robot(&mut self, entity: &Entity) {
-        let placed = self.placed(entity, &Isometry2::identity(), DEFAULT_SIZE_M, true);
-        let Placed { name, tag, at, body, .. } = placed;
-        if !placed.is_solid {
+        let on_floor = Isometry2::identity();
+        let Placed { name, is_solid, at, body } = self.placed(entity, &on_floor, DEFAULT_SIZE_M, true);
+        if !is_solid {
             let help = "here every robot is solid and seen";
             self.sources.warning(entity.place, "this robot is a ghost in Stage", help);
         }
@@ -34,8 +34,6 @@ impl Builder<'_, '_> {
             odometry,
             lasers: Vec::new(),
             sonars: Vec::new(),
-            fiducial: None,
-            tag: tag.map(|(tag, _)| tag),
             mass_kg: self.number(entity, "mass", 0.0..=1e5),
             wanders: self.wanders(entity),
             at: entity.place,
@@ -58,7 +56,6 @@ impl Builder<'_, '_> {
     fn carry(&mut self, entity: &Entity, on: &Isometry2<f64>, robot: &mut StageRobot) {
         let (is_sensor, size_m) = match entity.kind.as_str() {
             "ranger" | "laser" => (true, DEFAULT_RANGER_SIZE_M),
-            "fiducial" => (true, 0.0),
             "model" | "puck" => (false, DEFAULT_SIZE_M),
             "position" => {
                 let help = "here it is a part of the robot that carries it";
@@ -68,11 +65,7 @@ impl Builder<'_, '_> {
             }
             _ => return self.other(entity),
         };
-        let Placed { tag, at, body, is_solid, .. } = self.placed(entity, on, size_m, !is_sensor);
-        if let Some((_, place)) = tag {
-            let help = "a robot has one tag here, that of its own `position`";
-            self.sources.warning(place, "a tag of a part of a robot is left out", help);
-        }
+        let Placed { at, body, is_solid, .. } = self.placed(entity, on, size_m, !is_sensor);
         if is_solid {
             add_body(robot, &body);
         }

@@ -1,6 +1,5 @@
 //! The sensors of a robot.
 
-use super::lexer::Span;
 use super::tree::Entity;
 use super::{Bounds, Drive, StageRobot, StageSensor};
 use crate::world::Builder;
@@ -19,26 +18,13 @@ const DEFAULT_INTERVAL_MS: f64 = 100.0;
 const MAX_INTERVAL_MS: f64 = 100_000.0;
 /// The maximum number of samples of a sensor.
 const MAX_SAMPLES: f64 = 10_000.0;
-/// A fiducial finder of Stage: how far it sees tags at all, and how far it tells them apart, m.
-const DEFAULT_FIDUCIAL_RANGE_M: f64 = 8.0;
-const DEFAULT_FIDUCIAL_RANGE_ID_M: f64 = 5.0;
 /// The narrowest and the widest cone of a sonar here, rad.
 const CONE_RAD: [f64; 2] = [PI / 180.0, PI];
 
 impl Builder<'_, '_> {
     /// Adds the sensors of an entity, whose pose in the world is `at`, to a robot.
     pub(super) fn sense(&mut self, entity: &Entity, at: &Isometry2<f64>, robot: &mut StageRobot) {
-        let to_robot = robot.pose.inverse();
-        if entity.kind == "fiducial" {
-            if robot.fiducial.is_some() {
-                let help = "a robot has one here, its first";
-                return self.left_out(entity, "a second fiducial finder on one robot is left out", help);
-            }
-            // Stage looks from its pose, whatever its origin.
-            robot.fiducial = self.fiducial(entity, to_robot * at);
-            return;
-        }
-        let mount = to_robot * (at * self.pose(entity, "origin"));
+        let mount = robot.pose.inverse() * (at * self.pose(entity, "origin"));
         let sensors = match entity.kind.as_str() {
             "laser" => self.old_laser(entity, mount).into_iter().collect(),
             _ => self.ranger(entity, &mount),
@@ -109,42 +95,6 @@ impl Builder<'_, '_> {
         let place = self.sources.name(at);
         let range_m = [range_min_m, range_max_m];
         Some(StageSensor { place, mount, beams, fov_rad, range_m, interval_ms, noise_std_m, at })
-    }
-
-    fn fiducial(&mut self, finder: &Entity, mount: Isometry2<f64>) -> Option<StageSensor> {
-        let at = finder.place;
-        let min_m = self.length_m(finder, "range_min").unwrap_or(0.0);
-        let max_m = self.length_m(finder, "range_max").unwrap_or(DEFAULT_FIDUCIAL_RANGE_M);
-        let max_id_m = self.length_m(finder, "range_max_id").unwrap_or(DEFAULT_FIDUCIAL_RANGE_ID_M);
-        let fov_rad = self.fov_rad(finder).unwrap_or(PI).min(TAU);
-        let interval_ms = self.interval_ms(finder);
-        if min_m > 0.0 {
-            let help = "nearer tags are found here, at their true range";
-            self.sources.warning(at, "a fiducial finder with a `range_min`", help);
-        }
-        if max_id_m < max_m {
-            let what = format!("in Stage this finder sees tags from {max_id_m} to {max_m} m, but not which");
-            self.sources.warning(at, what, "here it does not see them at all so far away");
-        }
-        let range_max_m = max_m.min(max_id_m);
-        if range_max_m <= 0.0 || fov_rad <= 0.0 {
-            let help = "`range_max`, `range_max_id` and `fov` must be greater than 0";
-            self.sources.error(at, "a fiducial finder finds nothing", help);
-            return None;
-        }
-        let (place, range_m) = (self.sources.name(at), [0.0, range_max_m]);
-        Some(StageSensor { place, mount, beams: 1, fov_rad, range_m, interval_ms, noise_std_m: 0.0, at })
-    }
-
-    /// The tag of a model; 0 is none.
-    pub(super) fn tag(&mut self, model: &Entity) -> Option<(u32, Span)> {
-        let (numbers, place) = self.numbers(model, "fiducial_return", 1..=1)?;
-        if numbers[0] < 0.0 || numbers[0] != numbers[0].trunc() {
-            let what = format!("the tag {} is left out", numbers[0]);
-            self.sources.warning(place, what, "tags here are whole numbers above 0");
-            return None;
-        }
-        (numbers[0] > 0.0).then_some((numbers[0] as u32, place))
     }
 
     fn fov_rad(&mut self, entity: &Entity) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use super::lexer::Span;
 use super::polygon::bounds;
-use super::{Bounds, Drive, StageRobot, StageSensor, StageWall, StageWorld, fastest};
+use super::{Bounds, Drive, StageRobot, StageSensor, StageWorld, fastest};
 use nalgebra::{Point2, Vector2};
 use sim::physics::{OdometryError, Rectangle};
 use toml::Value;
@@ -103,11 +103,7 @@ impl StageWorld {
         for (wall, rectangle) in
             self.walls.iter().flat_map(|wall| wall.rectangles.iter().map(move |r| (wall, r)))
         {
-            let (header, keys) = match wall.tag {
-                Some(tag) => ("[[obstacle]]", map.tagged(wall, rectangle, tag)),
-                None => ("[[wall]]", map.wall(rectangle)),
-            };
-            made.table_of(header, (wall.at, &wall.place), None, keys);
+            made.table_of("[[wall]]", (wall.at, &wall.place), None, map.wall(rectangle));
         }
         for robot in &self.robots {
             let mut table = |header: &str, keys| {
@@ -130,8 +126,7 @@ impl StageWorld {
                 let header = match kind {
                     "laser" if robot.lasers.len() == 1 => "[robot.laser]",
                     "laser" => "[[robot.laser]]",
-                    "sonar" => "[[robot.sonar]]",
-                    _ => "[robot.fiducial]",
+                    _ => "[[robot.sonar]]",
                 };
                 let keys = self::sensor(kind, sensor, robot.radius_m());
                 made.table_of(header, (sensor.at, &sensor.place), None, keys);
@@ -189,16 +184,6 @@ impl Map {
         vec![("from_m", end(-along)), ("to_m", end(along)), ("thickness_m", number(2.0 * x.min(y)))]
     }
 
-    fn tagged(&self, wall: &StageWall, shape: &Rectangle, tag: u32) -> Keys {
-        vec![
-            ("name", Value::from(wall.name.as_str())),
-            ("tag", Value::from(tag)),
-            ("center_m", self.point(shape.pose.translation.vector.into())),
-            ("size_m", point(&(2.0 * shape.half_m).into())),
-            ("heading_deg", heading(&shape.pose)),
-        ]
-    }
-
     fn robot(&self, robot: &StageRobot) -> Keys {
         let outline: Vec<Value> = robot.outline.iter().map(point).collect();
         let mut keys = vec![("name", Value::from(robot.name.as_str()))];
@@ -207,7 +192,6 @@ impl Map {
             false => ("footprint_m", Value::from(outline)),
         });
         keys.extend(robot.mass_kg.map(|mass_kg| ("mass_kg", number(mass_kg))));
-        keys.extend(robot.tag.map(|tag| ("tag", Value::from(tag))));
         keys.push(("pose_m", self.point(robot.pose.translation.vector.into())));
         keys.push(("heading_deg", heading(&robot.pose)));
         keys
@@ -239,24 +223,20 @@ fn drive(robot: &StageRobot) -> Keys {
 }
 
 fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
-    let (left_out, angle): (&[&str], _) = match kind {
-        "laser" => (&[], "fov_deg"),
-        "sonar" => (&["beams"], "cone_deg"),
-        _ => (&["beams", "range_min_m", "noise_std_m"], "fov_deg"),
-    };
     // Not farther out than it may be, by more than rounding.
     let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MAX_OUT_M - 1e-7);
-    let mut keys = vec![
-        ("beams", Value::from(sensor.beams as i64)),
-        (angle, degrees(sensor.fov_rad)),
+    let mut keys = match kind {
+        "laser" => vec![("beams", Value::from(sensor.beams as i64)), ("fov_deg", degrees(sensor.fov_rad))],
+        _ => vec![("cone_deg", degrees(sensor.fov_rad))],
+    };
+    keys.extend([
         ("range_min_m", number(sensor.range_m[0])),
         ("range_max_m", number(sensor.range_m[1])),
         ("rate_hz", number(1000.0 / f64::from(sensor.interval_ms))),
         ("mount_m", point(&mount_m.into())),
         ("mount_deg", heading(&sensor.mount)),
         ("noise_std_m", number(sensor.noise_std_m)),
-    ];
-    keys.retain(|(key, _)| !left_out.contains(key));
+    ]);
     keys
 }
 

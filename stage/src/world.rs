@@ -8,7 +8,7 @@ use crate::StageWall;
 use crate::lexer::{Kind, Token};
 use crate::outline::Pictures;
 use interfaces::{is_printable, pose, printable};
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Isometry2, Vector2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 use worldfile::Severity;
@@ -41,7 +41,6 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
         names: BTreeSet::new(),
         generated: BTreeMap::new(),
         walls: Vec::new(),
-        tagged: Vec::new(),
         robots: Vec::new(),
     };
     let lengths = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
@@ -60,7 +59,6 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
             return None;
         }
     }
-    builder.check_tags();
     let Builder { sources, walls, robots, .. } = builder;
     warn_of_unused(sources, tree);
     let Some(step_s) = step_s(longest_ms, &robots) else {
@@ -131,8 +129,6 @@ pub(super) struct Builder<'a, 'b> {
     /// The number of names that were generated, by what they begin with.
     pub(super) generated: BTreeMap<String, usize>,
     pub(super) walls: Vec<StageWall>,
-    /// The walls that have a tag, with their position and the place of the tag in the file.
-    pub(super) tagged: Vec<(usize, Point2<f64>, Span)>,
     pub(super) robots: Vec<StageRobot>,
 }
 

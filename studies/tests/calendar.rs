@@ -2,7 +2,7 @@
 
 use interfaces::{Purpose, RandomStream};
 use proptest::prelude::*;
-use studies::calendar::{DAY_S, HOUR_S, Habit, Hours, Recording, Stays, Timeline, WEEK_S};
+use studies::calendar::{DAY_S, HOUR_S, Habit, Hours, Stays, Timeline, WEEK_S};
 use studies::{Belief, Building, Kind, Model, STEP_S};
 
 fn habit() -> Habit {
@@ -64,20 +64,6 @@ fn things_are_blocked_as_often_as_the_model_says() {
         let error = (p * (1.0 - p) / 4000.0).sqrt();
         assert!((share - p).abs() < 4.0 * error + 1e-3, "hour {hour}: {share} against {p}");
     }
-}
-
-#[test]
-fn recorded_things_repeat_what_was_recorded() {
-    let text = "time_s,state\n100,1\n160,1\n200,nan\n220,0\n";
-    let recording = Recording::parse(text).unwrap();
-    let mut timeline = Timeline::recorded(&recording.known_changes());
-    timeline.advance(0.0, |_, _| ());
-    assert!(timeline.is_blocked());
-    assert_eq!(timeline.next_event_s(), 120.0);
-    assert_eq!(changes(&mut timeline, [1e9]), [(120.0, false)]);
-    assert!(!timeline.is_blocked() && timeline.next_event_s() == f64::INFINITY);
-    let error = Recording::parse("time_s,state\n0,0\n10,2\n").unwrap_err().to_string();
-    assert_eq!(error, "line 3: expected `time_s,state` with a state of 0, 1 or nan, found `10,2`");
 }
 
 #[test]

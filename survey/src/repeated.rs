@@ -59,13 +59,8 @@ pub(crate) fn silence_note(poses: &[TrajectoryPose], hiding_s: f64) -> Option<St
     let (total_s, count) = (silent_s.iter().sum::<f64>(), silent_s.len());
     (count > 0).then(|| {
         let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
-        let total = match total_s {
-            time_s if time_s < 90.0 => format!("{time_s:.0} s"),
-            time_s if time_s < 5400.0 => format!("{:.0} min", time_s / 60.0),
-            time_s => format!("{:.1} h", time_s / 3600.0),
-        };
         format!(
-            "the laser was silent {times} for more than {max_s:.0} s, {total} in all: this time counts as not observed"
+            "the laser was silent {times} for more than {max_s:.0} s, {total_s:.0} s in all: this time counts as not observed"
         )
     })
 }
@@ -113,13 +108,13 @@ mod silence_tests {
         let dense: Vec<f64> = (0..100).map(|scan| 0.1 * f64::from(scan)).chain([17.8, 46_800.0]).collect();
         assert_eq!(max_step_s(&poses(&dense), 8.0), 8.0);
         let expected =
-            "the laser was silent once for more than 8 s, 13.0 h in all: this time counts as not observed";
+            "the laser was silent once for more than 8 s, 46782 s in all: this time counts as not observed";
         assert_eq!(silence_note(&poses(&dense), 8.0).as_deref(), Some(expected));
         let rare: Vec<f64> =
             (0..100).map(|scan| 5.0 * f64::from(scan)).chain([540.0, 595.0, 650.0]).collect();
         assert_eq!(max_step_s(&poses(&rare), 8.0), 50.0);
         let expected =
-            "the laser was silent 2 times for more than 50 s, 2 min in all: this time counts as not observed";
+            "the laser was silent 2 times for more than 50 s, 110 s in all: this time counts as not observed";
         assert_eq!(silence_note(&poses(&rare), 8.0).as_deref(), Some(expected));
         for few in [&[][..], &[3.0], &rare[..100]] {
             assert_eq!((max_step_s(&poses(few), 8.0) >= 8.0, silence_note(&poses(few), 8.0)), (true, None));

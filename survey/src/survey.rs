@@ -126,14 +126,6 @@ impl Survey {
         }
     }
 
-    /// Counts a log that was learned in part as finished: its rest is left out.
-    pub fn leave_rest(&mut self, log: usize) {
-        if let Some(log) = self.logs.get_mut(log) {
-            log.readings = log.used;
-        }
-        self.keep_numbers();
-    }
-
     /// Keeps the numbers of the places.
     fn keep_numbers(&mut self) {
         let places = self.places();

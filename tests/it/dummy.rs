@@ -4,9 +4,8 @@ use agent::Features;
 use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
-use robot::{Belief, ExactPoses, Pilot, Robot, explore};
+use robot::{Belief, ExactPoses, Pilot, Robot};
 use sim::physics::PhysicsWorld;
-use std::ops::ControlFlow;
 
 const STANDS_UNTIL_S: f64 = 30.0;
 const END_S: f64 = 60.0;
@@ -38,19 +37,19 @@ fn it_waits_and_goes_on() {
     let mut robot = Robot::new(Box::new(ExactPoses), mapper, Visitor);
     let mut way: Vec<(f64, f64)> = Vec::new();
     let mut seen_waiting = Vec::new();
-    explore(&mut world, &mut robot, |world, robot, turn| -> anyhow::Result<_> {
+    let (mut command, mut time_s) = (None, 0.0);
+    while time_s < END_S {
+        let turn = robot::turn(&mut world, &mut robot, &mut command).unwrap();
+        time_s = turn.reading.time_s;
         let dummy = world.fleet().robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
-        way.push((turn.reading.time_s, dummy.x));
+        way.push((time_s, dummy.x));
         assert_eq!(world.contacts(), []);
-        if turn.reading.time_s < STANDS_UNTIL_S {
+        if time_s < STANDS_UNTIL_S {
             // The front of the dummy's body, which the robot observes.
             let front = Point2::new(dummy.x + 0.18, dummy.y);
             seen_waiting.push(robot.mapper.states().get(robot.mapper.frame().cell_at(&front)).copied());
         }
-        let is_over = turn.reading.time_s >= END_S;
-        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-    })
-    .unwrap();
+    }
     let mapper = &robot.mapper;
 
     let x_at = |time_s: f64| way.iter().find(|(at_s, _)| *at_s >= time_s).unwrap().1;

@@ -155,22 +155,26 @@ fn an_interrupted_run_keeps_its_part_and_goes_on_with_the_same_trajectory() {
     let scans = run.summary().number("/scans");
     assert!((101.0..12_100.0).contains(&scans), "{scans}");
 
-    // Nothing can follow a log that is learned in part, unless its rest is left out.
+    // Nothing can follow a log that is learned in part, unless it is taken out of the state.
     run.write("c.log", &standing_log(TUESDAY_S + 86_400.0, 60));
     let kept = fs::read(run.path("a.state")).unwrap();
     let part = scans - 100.0;
     let expected = format!(
-        "error: b.log is learned in part ({part} of 12000 scans): give it as well, then it goes on from there, or leave out \
-         its rest by --leave-rest\n"
+        "error: b.log is learned in part ({part} of 12000 scans): give it as well, then it goes on from there, or take it out \
+         of the state by state_file remove\n"
     );
     assert_eq!(run.refuses(&format!("c.log {SAVED}")), expected);
     assert!(fs::read(run.path("a.state")).unwrap() == kept);
-    fs::copy(run.path("a.state"), run.path("b.state")).unwrap();
-    run.goes_well(&format!("c.log {QUIET} --state b.state --leave-rest"));
-    assert_eq!(run.summary().number("/scans"), scans + 60.0);
-
     run.goes_well(&format!("a.log b.log {SAVED}"));
     assert_eq!(differing(&results(&run), &whole), [""; 0]);
+
+    run.goes_well(&format!("a.log {QUIET} --state b.state"));
+    assert_eq!(run.interrupted("b.log --no-rrd --state b.state", is_second).code, Some(130));
+    let run = run.with("state_file");
+    run.goes_well("remove b.state b.log");
+    let run = run.with("map_log");
+    run.goes_well(&format!("c.log {QUIET} --state b.state"));
+    assert_eq!(run.summary().number("/scans"), 160.0);
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn quiet_is_silent() {
 #[test]
 fn the_end_is_reported_in_sentences_and_progress_in_plain_lines() {
     let ended = Run::new().goes_well("--no-rrd --duration 120 --speed 100");
-    ended.prints(&["agent in four rooms: 2.0 simulated minutes in "]);
+    ended.prints(&["agent in four rooms: 2 min simulated in "]);
     for word in ["seen", "map", "rates", "goals", "contacts", "files"] {
         ended.prints(&[&format!("\n  {word}")]);
     }
@@ -81,7 +81,7 @@ fn a_terminal_shows_a_bar_that_goes_away() {
     let run = Run::new();
     let ended = crate::terminal::run(&run, "--no-rrd --duration 300 --speed 200");
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let (before, after) = ended.stdout.split_once("agent in four rooms: 5.0").unwrap();
+    let (before, after) = ended.stdout.split_once("agent in four rooms: 5 min").unwrap();
     assert!(before.contains("█") && before.contains(" of 300 s at "), "{before:?}");
     assert!(!after.contains("█"), "{after:?}");
     // The code `[2K` clears the line.

@@ -38,11 +38,6 @@ fn hash(fleet: &Fleet) -> u64 {
             eat(reading.time_s.to_bits());
             eat(u64::from(reading.range_m.to_bits()));
         }
-        for found in robot.fiducials() {
-            eat(u64::from(found.tag));
-            eat(found.bearing_rad.to_bits());
-            eat(found.range_m.to_bits());
-        }
         robot.bumpers().for_each(|is_pressed| eat(u64::from(is_pressed)));
     }
     for corner in fleet.obstacles().flat_map(|obstacle| obstacle.corners) {

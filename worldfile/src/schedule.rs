@@ -1,20 +1,11 @@
 //! The calendar of a world: when it starts, and the schedules of its things.
 
-use crate::files::Files;
 use crate::reader::{Table, Value};
-use calendar::{Changes, Habit, Hours, Recording, Schedule, Stays, time_of_week_s};
+use calendar::{Habit, Hours, Schedule, Stays, time_of_week_s};
 use toml::Value as Toml;
 
 /// The keys of a schedule.
-pub(crate) const KEYS: &str =
-    "hours, free_s, blocked_s, quiet_free_s, quiet_blocked_s, events, one_means, starts_blocked";
-/// The keys of a schedule that do not go with `events`.
-const HABIT_KEYS: [&str; 6] =
-    ["hours", "free_s", "blocked_s", "quiet_free_s", "quiet_blocked_s", "starts_blocked"];
-/// What the state 1 of a file of events means; the value: whether it is blocked.
-const ONE_MEANS: [(&str, bool); 2] = [("blocked", true), ("free", false)];
-/// The largest file of events, bytes.
-const MAX_FILE_BYTES: u64 = 64 << 20;
+pub(crate) const KEYS: &str = "hours, free_s, blocked_s, quiet_free_s, quiet_blocked_s, starts_blocked";
 /// The shortest and the longest mean stay, s.
 const STAY_S: std::ops::RangeInclusive<f64> = 1.0..=1e9;
 
@@ -29,11 +20,10 @@ pub(crate) fn starts_s(root: &Table<'_>, is_needed: bool) -> Option<Option<f64>>
 }
 
 /// The schedule of the thing `name`, whose table is `thing`. `Some(None)`: it has none.
-pub(crate) fn schedule(thing: &Table<'_>, name: &str, files: &dyn Files) -> Option<Option<Schedule>> {
+pub(crate) fn schedule(thing: &Table<'_>, name: &str) -> Option<Option<Schedule>> {
     let Some(value) = thing.get("schedule") else { return Some(None) };
     let table = value.table(KEYS)?;
-    let schedule = if table.has("events") { recorded(&table, name, files) } else { habit(&table, name) };
-    table.sound(Some(schedule?))
+    table.sound(Some(habit(&table, name)?))
 }
 
 /// The hours that a list of texts names.
@@ -47,13 +37,8 @@ pub(crate) fn hours(value: &Value<'_, '_>) -> Option<Hours> {
 }
 
 fn habit(table: &Table<'_>, name: &str) -> Option<Schedule> {
-    if table.has("one_means") {
-        let help = "leave it out, or give `events = \"FILE.csv\"`";
-        let what = format!("the schedule of `{name}` has no events");
-        return table.error(&what, (table.at("one_means"), "of which events?"), &[], help);
-    }
     if !table.has("free_s") || !table.has("blocked_s") {
-        let help = "it needs either `free_s` and `blocked_s`, the mean stays in both states, or `events = \"FILE.csv\"`";
+        let help = "it needs `free_s` and `blocked_s`, the mean stays in both states";
         let what = format!("the schedule of `{name}` is not complete");
         return table.error(&what, (table.span.clone(), "this schedule"), &[], help);
     }
@@ -63,7 +48,7 @@ fn habit(table: &Table<'_>, name: &str) -> Option<Schedule> {
     let (quiet_free, quiet_blocked) = (quiet("quiet_free_s", free), quiet("quiet_blocked_s", blocked));
     let starts_blocked = table.get("starts_blocked").map_or(Some(true), |value| value.flag());
     let habit = Habit { hours: hours?, active: [free?, blocked?], quiet: [quiet_free?, quiet_blocked?] };
-    Some(Schedule { changes: Changes::Habit(habit), starts_blocked: starts_blocked? })
+    Some(Schedule { habit, starts_blocked: starts_blocked? })
 }
 
 /// Stays in a state: their mean, or the mean of short ones, that of long ones, and the share of long ones.
@@ -81,31 +66,9 @@ fn stays(value: &Value<'_, '_>) -> Option<Stays> {
     Some(Stays { short_s: short?, long_s: long?, long_share: share? })
 }
 
-fn recorded(table: &Table<'_>, name: &str, files: &dyn Files) -> Option<Schedule> {
-    table.has_none_of(&HABIT_KEYS, "events", name)?;
-    let is_one_blocked = table.choice("one_means", &ONE_MEANS)?;
-    let file = table.get("events")?.text()?;
-    let bytes = files.read(&table.file.beside(file), MAX_FILE_BYTES).map_err(|error| error.to_string());
-    let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is no text".to_owned()));
-    let recording = text.and_then(|text| Recording::parse(&text));
-    match recording {
-        Ok(mut recording) => {
-            if !is_one_blocked {
-                recording.changes.iter_mut().for_each(|(_, state)| *state = state.map(|is_one| !is_one));
-            }
-            Some(Schedule::recorded(recording.known_changes()))
-        }
-        Err(why) => {
-            let what = format!("cannot read the events `{file}`: {why}");
-            let help = "`events` names a file of lines `time_s,state` (0 or 1), in the folder of this file";
-            table.error(&what, (table.at("events"), "these events"), &[], help)
-        }
-    }
-}
-
-/// The keys of a schedule with their values. `None` for a recorded one, whose file is not known.
-pub(crate) fn write_schedule(schedule: &Schedule) -> Option<Vec<(&'static str, Toml)>> {
-    let Changes::Habit(habit) = &schedule.changes else { return None };
+/// The keys of a schedule with their values.
+pub(crate) fn write_schedule(schedule: &Schedule) -> Vec<(&'static str, Toml)> {
+    let habit = &schedule.habit;
     let mut keys = Vec::new();
     if habit.hours != Hours::always() {
         keys.push(("hours", habit.hours.texts().into()));
@@ -116,7 +79,7 @@ pub(crate) fn write_schedule(schedule: &Schedule) -> Option<Vec<(&'static str, T
         keys.extend(all);
     }
     keys.push(("starts_blocked", schedule.starts_blocked.into()));
-    Some(keys)
+    keys
 }
 
 fn stays_value(stays: &Stays) -> Toml {

@@ -11,7 +11,7 @@
 //! cargo run -p curious-evaluation --example drift -- world=worlds/house.toml closed=1
 //! cargo run -p curious-evaluation --example drift -- carried_m=3 carried_deg=180
 //! cargo run -p curious-evaluation --example drift -- shelves=1
-//! cargo run -p curious-evaluation --example drift -- trials=4 minutes=4 rows=drift.csv table=houses variant="360 beams"
+//! cargo run -p curious-evaluation --example drift -- trials=4 minutes=4 row=1 table=houses variant="360 beams"
 //! ```
 
 mod corners;
@@ -45,10 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if options.trials > 1 {
         total.print("all");
     }
-    match &options.rows {
-        Some(path) => row::append(path, &row::Row::of(&options, &total)),
-        None => Ok(()),
-    }
+    if options.row { row::print(&row::Row::of(&options, &total)) } else { Ok(()) }
 }
 
 /// One run.

@@ -39,8 +39,8 @@ pub(crate) struct Options {
     pub(crate) relocate: bool,
     /// A third of the furniture was moved since the map of the unknown starts was made.
     pub(crate) moved: bool,
-    /// The file that gets a row with the results, and what the row is called.
-    pub(crate) rows: Option<String>,
+    /// Whether a row of a CSV file ends the output, and what the row is called.
+    pub(crate) row: bool,
     pub(crate) table: String,
     pub(crate) variant: String,
 }
@@ -68,7 +68,7 @@ impl Options {
             no_loops: false,
             relocate: false,
             moved: false,
-            rows: None,
+            row: false,
             table: String::new(),
             variant: String::new(),
         };
@@ -78,7 +78,7 @@ impl Options {
             let is_on = value == "1";
             match key {
                 "world" => options.world = Some(value.to_owned()),
-                "rows" => options.rows = Some(value.to_owned()),
+                "row" => options.row = is_on,
                 "table" => value.clone_into(&mut options.table),
                 "variant" => value.clone_into(&mut options.variant),
                 "generate" => options.generate = number()? as u64,

@@ -4,8 +4,6 @@ use crate::options::Options;
 use crate::score::{Score, quantile};
 use serde::Serialize;
 use std::error::Error;
-use std::io::{Seek, SeekFrom};
-use std::path::Path;
 
 /// The results of a row.
 #[derive(Debug, Serialize)]
@@ -66,12 +64,9 @@ impl Row {
     }
 }
 
-/// Adds a row to a file; a new file gets the names of the columns.
-pub(crate) fn append(path: &str, row: &Row) -> Result<(), Box<dyn Error>> {
-    let mut file = files::open_to_append(Path::new(path))?;
-    file.seek(SeekFrom::End(0))?;
-    let has_columns = std::fs::read_to_string(path)?.lines().any(|line| !line.starts_with('#'));
-    let mut writer = csv::WriterBuilder::new().has_headers(!has_columns).from_writer(file);
+/// Prints a row, after the names of the columns.
+pub(crate) fn print(row: &Row) -> Result<(), Box<dyn Error>> {
+    let mut writer = csv::Writer::from_writer(std::io::stdout());
     writer.serialize(row)?;
     Ok(writer.flush()?)
 }

@@ -8,8 +8,7 @@ use crate::observer::map_hash;
 use agent::Features;
 use interfaces::{CellReading, GroundTruth, Reading, TrueState};
 use mapper::Mapper;
-use robot::{GoalSelector, Pilot, Tour, explore};
-use std::ops::ControlFlow;
+use robot::{GoalSelector, Pilot, Tour};
 
 /// Runs one trial. `goes_on` is called at every reading; when it returns false, the trial is canceled and there is no result.
 ///
@@ -40,24 +39,27 @@ fn run<W: TrialWorld, G: GoalSelector>(
     let mut full_map = sees_all.then(|| robot.mapper.clone());
     let mut sampler = Sampler::new(trial.experiment.length);
     let (mut collisions, mut rates) = (None, None);
-    explore(&mut world, &mut robot, |world, robot, turn| -> Result<_, TrialError> {
-        let truth = W::truth(world);
+    let mut command = None;
+    while rates.is_none() {
+        let turn = robot::turn(&mut world, &mut robot, &mut command)?;
+        let truth = W::truth(&world);
         if let Some(map) = &mut full_map {
             map.update(&observed(truth, &turn.reading))?;
         }
         let mapper = full_map.as_ref().unwrap_or(&robot.mapper);
-        if let Some(world) = W::physics(world) {
+        if let Some(world) = W::physics(&world) {
             let own = world.contacts().iter().filter(|contact| contact.moving);
             *collisions.get_or_insert(0) += own.count() as u64;
         }
-        sampler.update::<W>(mapper, world);
-        let is_complete = sampler.is_complete(mapper.time());
-        if is_complete {
+        sampler.update::<W>(mapper, &world);
+        if sampler.is_complete(mapper.time()) {
             rates = Some(rate_scores(mapper, truth));
         }
         robot.pilot.take_messages(); // they must not accumulate
-        Ok(if goes_on() && !is_complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-    })?;
+        if !goes_on() {
+            break;
+        }
+    }
     let Some(rates) = rates else { return Ok(None) };
     let mut mapper = full_map.unwrap_or(robot.mapper);
     let strategies = robot.pilot.strategies(Features::of(&mut mapper)).into_iter();

@@ -7,15 +7,15 @@ use evaluation::scheduled_things::ScheduledThings;
 use mapper::Mapper;
 use robot::PatrolDay;
 use sim::physics::{PhysicsWorld, WorldSpec};
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::collections::BTreeSet;
 
-/// The hours at which the door closes and opens: each stay lasts.
-const EVENTS: &str = "time_s,state\n0,0\n7200,1\n14400,0\n28800,1\n";
-/// The minutes of 10 hours, from 0:00 on, and those in which the door is open.
+/// The door closes within seconds after 2 hours and after 8 hours, and opens after 4 hours: the world starts at 7:00.
+const SCHEDULE: &str = "hours = [\"Mon 9:00-11:00\", \"Mon 15:00-24:00\"]\nfree_s = 1.0\nblocked_s = 1e9\n\
+                        quiet_free_s = 1e9\nquiet_blocked_s = 1.0\nstarts_blocked = false\n";
+/// The minutes of 10 hours, from the start on, and those in which the door is open.
 const MINUTES: usize = 601;
 
-/// Two rooms of the same size, and a door between them that repeats these events; the robot is on patrol for a twentieth of the time.
+/// Two rooms of the same size, and a door between them with this schedule; the robot is on patrol for a twentieth of the time.
 fn world() -> WorldSpec {
     let page = include_str!("../../../docs/worlds.md");
     let begin = page.find("name = \"two rooms\"").unwrap();
@@ -23,9 +23,8 @@ fn world() -> WorldSpec {
     let (before, rest) = text.split_once("[obstacle.schedule]").unwrap();
     let (_, robot) = rest.split_once("[[robot]]").unwrap();
     let robot = robot.replace("beams = 360", "beams = 90").replace("Wed", "Sun");
-    let text = format!("{before}[obstacle.schedule]\nevents = \"door.csv\"\n[[robot]]{robot}");
-    let files = BTreeMap::from([(PathBuf::from("door.csv"), EVENTS.as_bytes().to_vec())]);
-    worldfile::physics::parse_world_with("rooms.toml", &text, &files).unwrap()
+    let text = format!("{before}[obstacle.schedule]\n{SCHEDULE}[[robot]]{robot}");
+    worldfile::physics::parse_world("rooms.toml", &text).unwrap()
 }
 
 /// A map that was never updated predicts ½ for the door: the scores follow from the events alone. The large steps of a rest are not

@@ -39,14 +39,14 @@ pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
-pub use sensors::{Fiducial, SonarReading};
+pub use sensors::SonarReading;
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
     BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
-    DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
-    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, ThingPart,
-    WanderSpec, WaypointsSpec, WorldSpec,
+    DrivenError, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec,
+    PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, ThingPart, WanderSpec,
+    WaypointsSpec, WorldSpec,
 };
 pub use things::Thing;
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -5,7 +5,6 @@ use super::ground_truth::cover::box_cells;
 use super::ground_truth::start::walls_cover;
 use super::shape::Rectangle;
 use super::spec::{DoorSpec, FleetSpec, Motion, ObstacleSpec, Opening};
-use calendar::Changes;
 use interfaces::TrueState;
 use std::collections::BTreeSet;
 
@@ -75,7 +74,7 @@ impl Fleet {
 
 impl Thing {
     /// The nominal mean stays of the thing at a time since the start of its world, s: away (open) and there (closed), s. `None` for
-    /// recorded or scripted changes.
+    /// scripted changes.
     pub fn mean_stays_s(&self, world: &FleetSpec, time_s: f64) -> Option<[f64; 2]> {
         let obstacle = world.obstacles.get(self.obstacle)?;
         if let Motion::Door(DoorSpec { opening, .. }) = &obstacle.motion
@@ -83,7 +82,7 @@ impl Thing {
         {
             return Some([*open_s, *closed_s]);
         }
-        let Changes::Habit(habit) = &obstacle.schedule()?.changes else { return None };
+        let habit = &obstacle.schedule()?.habit;
         let is_active = habit.hours.is_active(world.starts_s.unwrap_or_default() + time_s);
         Some(habit.stays(is_active).map(|stays| stays.mean_s()))
     }

@@ -102,14 +102,7 @@ position( pose [2 0 0 0] drive \"omni\" localization \"odom\" odom_error [0.1 0.
             ("bumpers", "position( bumper( bcount 1 bpose[0] [0 0 0 0] blength 0.1 ) )"),
             (
                 "tags",
-                "model( fiducial_return -1 )\nmodel( pose [1 0 0 0] origin [1 0 0 0] fiducial_return 1 )
-model( pose [5 0 0 0] bitmap \"p.png\" fiducial_return 2 )\nmodel( pose [5 0 0 0] fiducial_return 3 )
-model( pose [9 0 0 0] noblocks 1 fiducial_return 4 )\nposition( pose [7 0 0 0] model( fiducial_return 5 ) )",
-            ),
-            (
-                "fiducial finders",
-                "fiducial( )\nposition( fiducial( range_min 1 fiducial_key 3 ) fiducial( ) )
-position( pose [1 0 0 0] fiducial( range_max 0 ) )",
+                "model( fiducial_return 1 )\nposition( pose [1 0 0 0] fiducial( range_max 8 ) )\nfiducial( )",
             ),
             (
                 "outlines",

@@ -5,7 +5,6 @@ use crate::Bounds;
 use nalgebra::Point2;
 use sim::physics::Rectangle;
 use std::f64::consts::FRAC_PI_2;
-use worldfile::physics::parse_fleet;
 
 fn rectangle(min: [f64; 2], max: [f64; 2]) -> Rectangle {
     Rectangle::between(min.into(), max.into())
@@ -65,7 +64,7 @@ fn dark_pixels_fill_the_size_and_a_boundary_goes_around() {
 
 #[test]
 fn definitions_are_written_out() {
-    let text = "define slab model( size [1 1 1] fiducial_return 7 )
+    let text = "define slab model( size [1 1 1] origin [0.5 0 0 0] )
         define long slab( size [4 1 1] slab( pose [0 5 0 0] ) )
         long( name \"a\" pose [0 0 0 0] model( name \"on\" pose [0 -5 0 0] ) )
         define slab model( size [9 9 1] )
@@ -74,7 +73,7 @@ fn definitions_are_written_out() {
     let world = good(text);
     let names: Vec<&str> = world.walls.iter().map(|wall| wall.name.as_str()).collect();
     assert_eq!(names, ["a", "model:0", "on", "b"]);
-    assert_eq!(world.walls[0].tag, Some(7));
+    assert_eq!(world.walls[0].rectangles[0].pose.translation.x, 0.5);
     assert_eq!(world.walls[1].rectangles[0].half_m.x, 0.5);
     // As in Stage, the first definition holds, and one of itself later on does no harm.
     assert_eq!(world.walls[3].rectangles[0].half_m.x, 0.5);
@@ -122,24 +121,6 @@ fn single_rays_are_sonars_and_count_for_the_step() {
     assert_eq!((sonar.range_m, sonar.interval_ms), ([0.2, 3.0], 40));
     // The laser that it is given scans every 100 ms.
     assert!((world.step_s - 0.02).abs() < 1e-12 && world.robots[0].lasers.is_empty());
-}
-
-#[test]
-fn tags_and_fiducial_finders() {
-    let text = "position( name \"a\" pose [0 0 0 0] size [0.4 0.4 0.4] fiducial_return 7
-          fiducial( pose [0.1 0 0 90] range_max 6 range_max_id 3 fov 90 update_interval 200 ) laser( ) )
-        model( name \"post\" pose [3 0 0 45] size [0.2 0.2 1] fiducial_return 12 )";
-    let (world, findings) = one(text);
-    let world = world.unwrap_or_else(|| panic!("{findings}"));
-    let finder = world.robots[0].fiducial.as_ref().unwrap();
-    assert_eq!((finder.range_m[1], finder.fov_rad, finder.interval_ms), (3.0, FRAC_PI_2, 200));
-    assert_eq!((world.robots[0].tag, world.walls[0].tag), (Some(7), Some(12)));
-    assert!(findings.iter().any(|finding| finding.what.contains("from 3 to 6 m, but not which")));
-    // In the fleet that it becomes, others find them.
-    let spec = parse_fleet("x.toml", &world.to_toml()).unwrap();
-    assert_eq!((spec.robots[0].tag, spec.obstacles[0].tag), (Some(7), Some(12)));
-    let finder = spec.robots[0].fiducial.unwrap();
-    assert_eq!((finder.range_max_m, finder.period_steps), (3.0, 4));
 }
 
 #[test]

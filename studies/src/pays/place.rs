@@ -1,4 +1,4 @@
-use calendar::{Changes, Habit, Schedule};
+use calendar::{Habit, Schedule};
 use interfaces::{GridFrame, Purpose, RandomStream, pose};
 use nalgebra::{Point2, Vector2};
 use rand::seq::SliceRandom;
@@ -123,10 +123,7 @@ impl Place {
     /// The schedule of a thing.
     pub fn schedule(&self, thing: &Item) -> Schedule {
         let [away_s, there_s] = thing.stays_s;
-        Schedule {
-            changes: Changes::Habit(Habit::chain(away_s, there_s)),
-            starts_blocked: thing.starts_there,
-        }
+        Schedule { habit: Habit::chain(away_s, there_s), starts_blocked: thing.starts_there }
     }
 
     /// The distance from a room to the next one, m.

@@ -1,11 +1,11 @@
 //! A live viewer of a run: started here, or already running.
 
 use rerun::external::re_grpc_client::write::ClientConnectionState;
-use rerun::external::re_uri::{ProxyUri, Scheme};
+use rerun::external::re_uri::ProxyUri;
 use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, LogSink};
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
@@ -150,7 +150,7 @@ fn wait_for<T>(timeout: Duration, mut poll: impl FnMut() -> Option<T>) -> Option
 }
 
 fn connect(uri: &ProxyUri) -> Result<GrpcSink, LiveError> {
-    check_answer(uri).map_err(|error| LiveError::unreachable(uri, error))?;
+    reach(uri).map_err(|error| LiveError::unreachable(uri, error))?;
     let sink = GrpcSink::new(uri.clone());
     let is_connected = wait_for(ANSWER_TIMEOUT, || match sink.status() {
         ClientConnectionState::Connected => Some(true),
@@ -182,7 +182,7 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
             format!("cannot start the viewer `{program}`: {why}")
         })
     })?;
-    let started = wait_for(START_TIMEOUT, || match (check_answer(uri), viewer.try_wait()) {
+    let started = wait_for(START_TIMEOUT, || match (reach(uri), viewer.try_wait()) {
         (Ok(()), _) => Some(Ok(())),
         // A launcher may end with success while the viewer that it launched goes on.
         (_, Ok(Some(status))) if !status.success() => Some(Err(LiveError(format!(
@@ -194,61 +194,25 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
     started.unwrap_or_else(|| Err(LiveError::unreachable(uri, timeout())))
 }
 
-// Checks that a viewer answers at an address, before the SDK connects to it.
-//
-// The SDK tries to connect without end, and counts a connection as open as soon as it is accepted, even if the
-// server never sends a byte.
-
 /// The maximum time until a running viewer answers.
 const ANSWER_TIMEOUT: Duration = Duration::from_millis(1500);
-/// The first bytes of an HTTP/2 client: the preface and an empty SETTINGS frame (RFC 9113, section 3.4).
-const PREFACE: &[u8] = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\x04\0\0\0\0\0";
-/// The length of the head of an HTTP/2 frame, bytes.
-const FRAME_HEAD: usize = 9;
-/// The type of a SETTINGS frame, the first frame that an HTTP/2 server sends.
-const SETTINGS: u8 = 4;
 
-/// Connects to the server at `uri`, without a word.
-pub(super) fn reach(uri: &ProxyUri) -> io::Result<TcpStream> {
+/// Checks that the server at `uri` accepts connections: the SDK tries to connect without end.
+fn reach(uri: &ProxyUri) -> io::Result<()> {
     let (host, port) = (uri.origin.host.to_string(), uri.origin.port);
-    let timed_out = || ErrorKind::TimedOut.into();
-    // In a thread, because the lookup of a name has no timeout of its own.
-    within_timeout(timed_out, move || {
-        let none = Err(io::Error::new(ErrorKind::NotFound, "the name has no address"));
-        (host.trim_matches(['[', ']']), port).to_socket_addrs()?.fold(none, |reached, address| {
-            reached.or_else(|_| TcpStream::connect_timeout(&address, ANSWER_TIMEOUT))
-        })
-    })
-}
-
-/// Checks that the server at `uri` answers as an HTTP/2 server, which a viewer is.
-fn check_answer(uri: &ProxyUri) -> io::Result<()> {
-    let mut server = reach(uri)?;
-    if uri.origin.scheme == Scheme::RerunHttps {
-        return Ok(()); // The SDK opens an encrypted connection only after an answer.
-    }
-    let silent =
-        || io::Error::new(ErrorKind::TimedOut, "a program accepts connections there, but does not answer");
-    within_timeout(silent, move || {
-        // Longer than the timeout of the check, so that the check reports its own reason.
-        server.set_read_timeout(Some(2 * ANSWER_TIMEOUT))?;
-        server.write_all(PREFACE)?;
-        let mut head = [0; FRAME_HEAD];
-        let is_http2 = server.read_exact(&mut head).is_ok() && head[3] == SETTINGS;
-        is_http2
-            .then_some(())
-            .ok_or_else(|| io::Error::new(ErrorKind::InvalidData, "what listens there is not a viewer"))
-    })
-}
-
-/// The result of `task` if it ends within [`ANSWER_TIMEOUT`], and otherwise the error of `late`.
-fn within_timeout<T: Send + 'static>(
-    late: impl FnOnce() -> io::Error,
-    task: impl FnOnce() -> io::Result<T> + Send + 'static,
-) -> io::Result<T> {
     let (report, outcome) = channel();
-    thread::spawn(move || report.send(task()));
-    outcome.recv_timeout(ANSWER_TIMEOUT).unwrap_or_else(|_| Err(late()))
+    // In a thread, because the lookup of a name has no timeout of its own.
+    thread::spawn(move || {
+        let none = Err(io::Error::new(ErrorKind::NotFound, "the name has no address"));
+        let addresses = (host.trim_matches(['[', ']']), port).to_socket_addrs();
+        let reached = addresses.and_then(|addresses| {
+            addresses.fold(none, |reached, address| {
+                reached.or_else(|_| TcpStream::connect_timeout(&address, ANSWER_TIMEOUT).map(drop))
+            })
+        });
+        report.send(reached)
+    });
+    outcome.recv_timeout(ANSWER_TIMEOUT).unwrap_or_else(|_| Err(ErrorKind::TimedOut.into()))
 }
 
 #[cfg(test)]
@@ -256,6 +220,14 @@ mod tests {
     use super::*;
     use std::io::Write;
     use std::net::TcpListener;
+
+    fn listen() -> TcpListener {
+        TcpListener::bind("127.0.0.1:0").unwrap()
+    }
+
+    fn address(server: &TcpListener) -> String {
+        server.local_addr().unwrap().to_string()
+    }
 
     fn fails(address: &str) -> String {
         LiveFeed::open(&Live::Connect(address.into())).err().unwrap().to_string()
@@ -272,23 +244,41 @@ mod tests {
 
     #[test]
     fn a_viewer_that_cannot_show_the_run_is_one_sentence() {
-        let listen = || TcpListener::bind("127.0.0.1:0").unwrap();
-        let address = |server: &TcpListener| server.local_addr().unwrap().to_string();
-        let silent = listen(); // the system accepts connections for it
-        let other = listen();
-        let (free, silent_at, other_at) = (address(&listen()), address(&silent), address(&other));
-        std::thread::spawn(move || other.accept().unwrap().0.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n"));
+        let free = address(&listen());
         let uri = parse(&free).unwrap();
         let spawns = |program: &str| spawn(program, &uri).unwrap_err().to_string();
         for (message, says) in [
             (fails(&free), format!("no viewer answers at rerun+http://{free}/proxy: ")),
-            (fails(&silent_at), "a program accepts connections there, but does not answer; ".to_owned()),
-            (fails(&other_at), "what listens there is not a viewer".to_owned()),
             (spawns("no-such-viewer-0"), "there is no program `no-such-viewer-0`".to_owned()),
             #[cfg(unix)]
             (spawns("false"), "ended at once".to_owned()),
         ] {
             assert!(message.contains(&says) && !message.contains('\n'), "{message}");
+        }
+    }
+
+    /// A connection counts as open as soon as it is accepted: what is not a viewer shows later, and keeps no run from its end.
+    #[test]
+    fn another_program_is_a_lost_viewer() {
+        for answer in ["", "HTTP/1.1 400 Bad Request\r\n\r\n"] {
+            let server = listen();
+            let at = address(&server);
+            std::thread::spawn(move || {
+                let answered = server.incoming().flatten().map(|mut client| {
+                    client.write_all(answer.as_bytes()).unwrap();
+                    client
+                });
+                answered.collect::<Vec<_>>() // they stay open
+            });
+            match LiveFeed::open(&Live::Connect(at)) {
+                Ok(mut feed) => {
+                    feed.close();
+                    assert!(feed.is_lost(), "{answer:?}");
+                }
+                Err(error) => {
+                    assert!(error.to_string().contains("what listens there is not a viewer"), "{error}")
+                }
+            }
         }
     }
 }

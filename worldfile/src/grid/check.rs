@@ -2,7 +2,6 @@
 
 use super::map::{Drawing, drawing};
 use super::path;
-use crate::files::Files;
 use crate::reader::{Table, unique_names, valid};
 use crate::schedule::{schedule, starts_s};
 use interfaces::Cell;
@@ -21,7 +20,7 @@ const STEP_S: f64 = 10.0;
 /// The maximum number of cells of all paths together: they are kept in memory.
 const MAX_PATH_CELLS: usize = 10_000_000;
 
-pub(super) fn world(root: &Table<'_>, files: &dyn Files) -> Option<GridSpec> {
+pub(super) fn world(root: &Table<'_>) -> Option<GridSpec> {
     let name = root.name();
     let description = root.description();
     let sensor_radius = root.needed("sensor_radius");
@@ -36,7 +35,7 @@ pub(super) fn world(root: &Table<'_>, files: &dyn Files) -> Option<GridSpec> {
     let mut blocks: Vec<BlockSpec> = Vec::new();
     let (mut starts, mut cells) = (BTreeMap::new(), 0);
     for table in &tables {
-        let Some(block) = block(table, drawing.as_ref(), files) else { continue };
+        let Some(block) = block(table, drawing.as_ref()) else { continue };
         cells += block.path.len();
         if cells > MAX_PATH_CELLS {
             let what = format!("the paths of the blocks have more than {MAX_PATH_CELLS} cells together");
@@ -71,10 +70,10 @@ fn calendar(root: &Table<'_>, is_needed: bool) -> Option<Option<GridCalendar>> {
     Some(starts_s?.zip(Some(step_s?)).map(|(starts_s, step_s)| GridCalendar { starts_s, step_s }))
 }
 
-fn block(table: &Table<'_>, drawing: Option<&Drawing>, files: &dyn Files) -> Option<BlockSpec> {
+fn block(table: &Table<'_>, drawing: Option<&Drawing>) -> Option<BlockSpec> {
     let name = table.name();
     if table.has("schedule") {
-        return scheduled(table, &name?, drawing, files);
+        return scheduled(table, &name?, drawing);
     }
     let dwell = table.needed("dwell").and_then(|value| value.integer_within(&(1..=BlockSpec::MAX_DWELL)));
     let longest = dwell.unwrap_or(BlockSpec::MAX_DWELL + 1) - 1;
@@ -94,9 +93,9 @@ fn block(table: &Table<'_>, drawing: Option<&Drawing>, files: &dyn Files) -> Opt
 }
 
 /// A block that is on its first cell, or on its last one, by a schedule.
-fn scheduled(table: &Table<'_>, name: &str, drawn: Option<&Drawing>, files: &dyn Files) -> Option<BlockSpec> {
+fn scheduled(table: &Table<'_>, name: &str, drawn: Option<&Drawing>) -> Option<BlockSpec> {
     table.has_none_of(&["dwell", "stood", "course"], "schedule", name)?;
-    let (schedule, course) = (schedule(table, name, files), Course::BackAndForth);
+    let (schedule, course) = (schedule(table, name), Course::BackAndForth);
     let path = path::cells(table, name, course, drawn);
     let schedule = schedule?.map(Box::new);
     table.sound(BlockSpec { name: name.to_owned(), dwell: 1, stood: 0, course, path: path?, schedule })

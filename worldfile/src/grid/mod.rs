@@ -29,14 +29,12 @@ mod path;
 mod tests;
 
 use crate::error::{WorldError, read_text};
-use crate::files::{Disk, Files};
 use crate::reader::{self, Kind};
 use crate::schedule::write_schedule;
 use crate::toml_value::lines;
 use interfaces::Cell;
 use sim::grid::GridSpec;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toml::Value;
 
 /// Reads and checks a world file.
@@ -46,7 +44,7 @@ use toml::Value;
 /// When the file cannot be read, and the errors of [`parse`].
 pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
     let (name, text) = read_text("world file", path.as_ref())?;
-    parse_with(&name, &text, &Disk)
+    parse(&name, &text)
 }
 
 /// Whether a text in TOML is the file of a grid world: its `map` is a drawing. That of a physics world is a table.
@@ -62,21 +60,10 @@ pub fn is_grid_world(text: &str) -> bool {
 /// contradict each other. The messages state the place and a valid value, for everything that is invalid, unless
 /// one error hides another.
 pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
-    parse_with(file_name, text, &BTreeMap::<PathBuf, Vec<u8>>::new())
+    reader::read(file_name, text, Kind::Grid, check::KEYS, check::world)
 }
 
-/// Checks the text of a world file as [`parse`] does, with recorded events. They are read from the folder of the path
-/// `file_name`.
-///
-/// # Errors
-///
-/// The errors of [`parse`], and when a file of events cannot be read.
-pub fn parse_with(file_name: &str, text: &str, files: &dyn Files) -> Result<GridSpec, WorldError> {
-    reader::read(file_name, text, Kind::Grid, check::KEYS, |root| check::world(root, files))
-}
-
-/// The text of a world file that describes `spec`: [`parse`] reads the same spec from it. Recorded events are left out: their
-/// file is not known.
+/// The text of a world file that describes `spec`: [`parse`] reads the same spec from it.
 pub fn to_toml(spec: &GridSpec) -> String {
     let [name, description] = [&spec.name, &spec.description].map(|text| Value::from(text.as_str()));
     let calendar = spec.calendar.map(|steps| {
@@ -97,10 +84,10 @@ pub fn to_toml(spec: &GridSpec) -> String {
         let course = word.map_or("", |(word, _)| *word);
         let points: Vec<Value> = way_points(&block.path).map(|cell| vec![cell.x, cell.y].into()).collect();
         text += "\n[[block]]\n";
-        if let Some(schedule) = block.schedule.as_ref().and_then(|schedule| write_schedule(schedule)) {
+        if let Some(schedule) = &block.schedule {
             text += &lines([("name", block.name.as_str().into()), ("path", points.into())]);
             text += "\n[block.schedule]\n";
-            text += &lines(schedule);
+            text += &lines(write_schedule(schedule));
             continue;
         }
         text += &lines([("name", block.name.as_str().into()), ("dwell", block.dwell.into())]);

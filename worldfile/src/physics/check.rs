@@ -57,7 +57,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     let obstacle_tables = root.tables("obstacle", obstacle::KEYS);
     let (mut obstacles, mut fixed, mut movers) = (Vec::new(), Vec::new(), Vec::new());
     for table in &obstacle_tables {
-        let Some(obstacle) = obstacle(table, &space, files, &obstacles) else { continue };
+        let Some(obstacle) = obstacle(table, &space, &obstacles) else { continue };
         let solid = |shape| Solid { shape, span: table.span.clone() };
         match &obstacle.motion {
             Motion::Fixed | Motion::Scheduled(_) if !obstacle.starts_present() => {}

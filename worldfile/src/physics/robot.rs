@@ -16,7 +16,7 @@ use sim::physics::{
 };
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
-                               bumper, sonar, fiducial, tag, behavior, patrol";
+                               bumper, sonar, behavior, patrol";
 
 /// The limits by which a behavior is judged if those of the drive are invalid: nothing is too fast for them.
 const BOUNDLESS: DriveLimits = DriveLimits {
@@ -43,8 +43,7 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
     let lasers = carrier.lasers(table, called);
     let bumper = bumper(table);
     let sonars = carrier.sonars(table);
-    let fiducial = carrier.fiducial(table);
-    let (mass_kg, tag) = (table.number_if("mass_kg", 0.001..=100_000.0), table.tag());
+    let mass_kg = table.number_if("mass_kg", 0.001..=100_000.0);
     let driver = Driver {
         robot: table,
         name: called,
@@ -59,7 +58,6 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         radius_m: body.radius_m,
         corners: body.corners,
         mass_kg,
-        tag,
         pose,
         drive: drive?,
         odometry: odometry?,
@@ -67,7 +65,6 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         more_lasers,
         bumper: bumper?,
         sonars: sonars?,
-        fiducial: fiducial?,
         behavior: behavior?,
         patrol: patrol?,
         name: name?,

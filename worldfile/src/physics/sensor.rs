@@ -1,9 +1,9 @@
-//! The sensors of a robot: lasers, bumpers, sonars, fiducial finders.
+//! The sensors of a robot: lasers, bumpers, sonars.
 
 use crate::reader::{Figure, Table, valid};
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
-use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
+use sim::physics::{BumperSpec, LaserSpec, SonarSpec};
 
 /// The maximum distance by which a sensor may be outside of the circle around its robot, m.
 pub const MAX_OUT_M: f64 = 1.0;
@@ -71,19 +71,6 @@ impl Carrier {
             period_steps: rate?.1,
             mount: mount?,
         })
-    }
-
-    /// `Some(None)`: the robot has none.
-    pub(super) fn fiducial(self, robot: &Table<'_>) -> Option<Option<FiducialSpec>> {
-        let Some(value) = robot.get("fiducial") else { return Some(None) };
-        let table = value.table("fov_deg, range_max_m, rate_hz, mount_m, mount_deg")?;
-        let (rate, mount) = (self.rate(&table), self.mount(&table, "a sensor"));
-        table.sound(Some(FiducialSpec {
-            fov_rad: table.number_or("fov_deg", 360.0, 1.0..=360.0).to_radians(),
-            range_max_m: table.number("range_max_m", 0.01..=1000.0),
-            period_steps: rate?.1,
-            mount: mount?,
-        }))
     }
 
     /// A rate (Hz), and the physics steps from one measurement to the next.

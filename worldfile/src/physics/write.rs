@@ -49,7 +49,7 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
         let thing = obstacle.part.map(|part| &spec.obstacles[part.thing]).filter(|thing| *thing != obstacle);
         table("\n[[obstacle]]\n", self::obstacle(obstacle, thing)?);
         if let Some(schedule) = obstacle.schedule().filter(|_| thing.is_none()) {
-            table("\n[obstacle.schedule]\n", write_schedule(schedule)?);
+            table("\n[obstacle.schedule]\n", write_schedule(schedule));
         }
     }
     for robot in &spec.robots {
@@ -66,8 +66,7 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
 
 /// An obstacle, which can be a part of a thing.
 fn obstacle(obstacle: &ObstacleSpec, thing: Option<&ObstacleSpec>) -> Option<Keys> {
-    let ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None, .. } = obstacle
-    else {
+    let ObstacleSpec { name, shape, motion, appears_s: None, disappears_s: None, .. } = obstacle else {
         return None;
     };
     let mut keys: Keys = vec![("name", name.as_str().into())];
@@ -135,7 +134,7 @@ fn body(robot: &RobotSpec) -> Option<Keys> {
         && robot.mass_kg.is_none()
         && robot.odometry.is_exact()
         && (robot.more_lasers.is_empty() && robot.sonars.is_empty())
-        && (robot.bumper.is_none() && robot.fiducial.is_none() && robot.tag.is_none());
+        && robot.bumper.is_none();
     let keys = || {
         vec![
             ("name", robot.name.as_str().into()),

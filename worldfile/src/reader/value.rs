@@ -220,11 +220,6 @@ impl Table<'_> {
         self.or_invalid(count, 0) as usize
     }
 
-    /// The number of a tag, `None` if it is not given.
-    pub(crate) fn tag(&self) -> Option<u32> {
-        self.get("tag").map(|value| self.or_invalid(value.integer_within(&(0..=u32::MAX)), 0))
-    }
-
     pub(crate) fn flag(&self, key: &'static str) -> bool {
         self.get(key).is_some_and(|value| self.or_invalid(value.flag(), false))
     }

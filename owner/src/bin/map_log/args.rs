@@ -162,10 +162,6 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Map")]
     pub(crate) accept_map: bool,
 
-    /// Leave out the rest of a log that the state has learned in part and that is not given any more
-    #[arg(long, requires = "state", help_heading = "Output")]
-    pub(crate) leave_rest: bool,
-
     /// Print only errors
     #[arg(long, short, help_heading = "Output")]
     pub(crate) quiet: bool,

@@ -87,12 +87,8 @@ pub(crate) fn begin_s<'a>(entries: impl Iterator<Item = &'a LogEntry>) -> Option
 /// Leaves out what `survey` has learned, and gives every other log its place in time after the logs of the survey. What is
 /// left begins with the logs of the survey that were not learned to their end.
 ///
-/// A log that was learned in part and is not given stays so, and nothing can follow it: an error, unless `leaves_rest`.
-pub(crate) fn continued(
-    mut sources: Vec<Source>,
-    survey: &mut Survey,
-    leaves_rest: bool,
-) -> anyhow::Result<Vec<Source>> {
+/// A log that was learned in part and is not given stays so, and nothing can follow it: an error.
+pub(crate) fn continued(mut sources: Vec<Source>, survey: &mut Survey) -> anyhow::Result<Vec<Source>> {
     for (number, source) in sources.iter().enumerate() {
         let is_same = |other: &&Source| other.entry.content == source.entry.content;
         let twice = sources[..number].iter().find(is_same).filter(|_| source.entry.content != 0);
@@ -103,7 +99,7 @@ pub(crate) fn continued(
             twice.map_or("", |twice| &twice.entry.name)
         );
     }
-    for (number, log) in survey.logs().to_vec().iter().enumerate() {
+    for log in survey.logs() {
         let (name, used, all) = (&log.entry.name, log.used, log.readings);
         let given = sources.iter().find(|source| source.entry.content == log.entry.content);
         match given {
@@ -112,10 +108,9 @@ pub(crate) fn continued(
                 source.entry.choice == log.entry.choice,
                 "{name}: {used} of its {all} scans are learned with other --scan-topic, --odom-topic, --base-frame or --map-frame"
             ),
-            None if leaves_rest => survey.leave_rest(number),
             None => bail!(
-                "{name} is learned in part ({used} of {all} scans): give it as well, then it goes on from there, or leave \
-                 out its rest by --leave-rest"
+                "{name} is learned in part ({used} of {all} scans): give it as well, then it goes on from there, or take it \
+                 out of the state by state_file remove"
             ),
         }
     }

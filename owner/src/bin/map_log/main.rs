@@ -82,7 +82,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         survey.name_places(names);
     }
     let first = given.first().cloned().context("no log is given").map_err(input)?;
-    let sources = logs_in_order::continued(given, &mut survey, args.leave_rest).map_err(input)?;
+    let sources = logs_in_order::continued(given, &mut survey).map_err(input)?;
     let first_log = survey.logs().iter().take_while(|log| log.is_finished()).count();
     let is_interrupted = interrupt_flag()?; // before any file is made
     let mut folder = results_folder(&args.out)?;

@@ -10,13 +10,11 @@ pub use time::Controller;
 
 use super::bodies::Bodies;
 use super::drives::Velocity;
-use super::form::Form;
 use super::obstacles::Obstacle;
 use super::past::Past;
 use super::rays::Scene;
-use super::report::{Body, Contact, ObstacleView};
+use super::report::{Contact, ObstacleView};
 use super::robot::{RobotView, SimulatedRobot};
-use super::sensors::Tagged;
 use super::shape::Rectangle;
 use super::snapshot::{self, SnapshotError, value};
 use super::spec::FleetSpec;
@@ -102,25 +100,6 @@ impl Fleet {
     pub fn command(&mut self, robot: usize, wanted: impl Into<Velocity>) -> bool {
         let driven = self.robots.get_mut(robot).filter(|robot| robot.is_driven());
         driven.map(|robot| robot.command(&wanted.into())).is_some()
-    }
-
-    /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
-    pub(crate) fn tagged(&self) -> Vec<Tagged> {
-        if self.spec().robots.iter().all(|robot| robot.fiducial.is_none()) {
-            return Vec::new();
-        }
-        let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {
-            let tag = robot.spec.tag?;
-            Some(Tagged { tag, body: Body::Robot(index), center: robot.at(), form: robot.form() })
-        });
-        let standing = self.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.is_standing());
-        let obstacles = standing.filter_map(|(index, obstacle)| {
-            let (tag, shape) = (obstacle.spec.tag?, &obstacle.shape);
-            let (center, form) =
-                (shape.pose.translation.vector.into(), Form::Convex(shape.corners().to_vec()));
-            Some(Tagged { tag, body: Body::Obstacle(index), center, form })
-        });
-        robots.chain(obstacles).collect()
     }
 
     /// The walls, and the obstacles that are present now.

@@ -77,14 +77,13 @@ impl Fleet {
 
     /// What sensors that measure now can see. `sweeps`: a laser of theirs sweeps.
     pub(super) fn surroundings(&self, sweeps: bool) -> Arc<Surroundings> {
-        let (scene, tagged) = (self.scene.clone(), self.tagged());
         let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
         let recent =
             if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
-        let (time_s, glass) = (self.time_s(), self.spec().glass.clone());
-        Arc::new(Surroundings { step: self.step, time_s, scene, glass, tagged, recent })
+        let (scene, time_s, glass) = (self.scene.clone(), self.time_s(), self.spec().glass.clone());
+        Arc::new(Surroundings { step: self.step, time_s, scene, glass, recent })
     }
 
     /// Moves robots and obstacles by one physics step.

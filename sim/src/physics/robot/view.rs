@@ -1,6 +1,6 @@
 use super::SimulatedRobot;
 use crate::physics::report::Body;
-use crate::physics::sensors::{Fiducial, Sensor, SonarReading};
+use crate::physics::sensors::{Sensor, SonarReading};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 
@@ -51,11 +51,6 @@ impl<'a> RobotView<'a> {
     /// The latest reading of each sonar, in the order of the spec.
     pub fn sonars(&self) -> impl Iterator<Item = Option<SonarReading>> + use<'a> {
         self.robot.sensors.iter().filter_map(Sensor::sonar_reading)
-    }
-
-    /// The latest detections of the fiducial finder, robots first, each in the order of the spec.
-    pub fn fiducials(&self) -> impl Iterator<Item = &'a Fiducial> + use<'a> {
-        self.robot.sensors.iter().filter_map(Sensor::detections).flatten()
     }
 
     /// For each bumper, from right to left, whether it touches something now.

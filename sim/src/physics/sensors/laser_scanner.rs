@@ -177,7 +177,7 @@ impl Device for LaserScanner {
         }
     }
 
-    fn time_s(reading: &LaserReading) -> Option<f64> {
-        Some(reading.time_s)
+    fn time_s(reading: &LaserReading) -> f64 {
+        reading.time_s
     }
 }

@@ -6,12 +6,9 @@
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
 //! variant to [`Sensor`].
 
-mod fiducial_finder;
 mod laser_scanner;
 mod on_demand;
 
-pub use fiducial_finder::Fiducial;
-pub(super) use fiducial_finder::Tagged;
 pub(super) use laser_scanner::LaserScanner;
 pub(super) use on_demand::{Look, OnDemand};
 
@@ -19,7 +16,6 @@ use super::past::Recent;
 use super::rays::{Beams, Ring, Scene};
 use super::snapshot::{Values, value};
 use super::spec::{BumperSpec, Glass, LaserSpec, RobotSpec, SonarSpec};
-use fiducial_finder::FiducialFinder;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use laser_scanner::LaserStreams;
 use nalgebra::{Isometry2, Point2};
@@ -33,7 +29,6 @@ use std::sync::Arc;
 pub(super) enum Sensor {
     Laser(Box<OnDemand<LaserScanner>>),
     Sonar(Box<OnDemand<Sonar>>),
-    Fiducials(Box<OnDemand<FiducialFinder>>),
 }
 
 /// The same for every kind of sensor.
@@ -42,7 +37,6 @@ macro_rules! each {
         match $self {
             Sensor::Laser($sensor) => $result,
             Sensor::Sonar($sensor) => $result,
-            Sensor::Fiducials($sensor) => $result,
         }
     };
 }
@@ -61,8 +55,6 @@ impl Sensor {
             let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
             sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams, ring), noise))));
         }
-        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder, ring), ()));
-        sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
         sensors
     }
 
@@ -112,12 +104,6 @@ impl Sensor {
         Some(sonar.reading().copied())
     }
 
-    /// The latest detections, if the sensor is a fiducial finder.
-    pub(super) fn detections(&self) -> Option<&[Fiducial]> {
-        let Self::Fiducials(finder) = self else { return None };
-        Some(finder.reading().map_or(&[], Vec::as_slice))
-    }
-
     /// Removes the latest reading.
     pub(super) fn clear(&mut self) {
         each!(self, sensor => sensor.clear())
@@ -134,18 +120,15 @@ impl Sensor {
                 let (noise, reading) = sonar.state();
                 vec![value(noise), value(reading)]
             }
-            Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
 }
 
-/// The ring of the sonars and of the fiducial finder of a robot.
+/// The ring of the sonars of a robot.
 fn ring(spec: &RobotSpec) -> Ring {
-    let sonars = spec.sonars.iter().map(|sonar| (sonar.mount, sonar.range_max_m));
-    let finder = spec.fiducial.iter().map(|finder| (finder.mount, finder.range_max_m));
-    sonars.chain(finder).fold(Ring::default(), |ring, (mount, range_m)| Ring {
-        offset_m: ring.offset_m.max(mount.translation.vector.norm()),
-        range_m: ring.range_m.max(range_m),
+    spec.sonars.iter().fold(Ring::default(), |ring, sonar| Ring {
+        offset_m: ring.offset_m.max(sonar.mount.translation.vector.norm()),
+        range_m: ring.range_m.max(sonar.range_max_m),
     })
 }
 
@@ -168,7 +151,6 @@ pub(super) struct Surroundings {
     pub(super) time_s: f64,
     pub(super) scene: Scene,
     pub(super) glass: Vec<Glass>,
-    pub(super) tagged: Vec<Tagged>,
     /// For lasers that sweep.
     pub(super) recent: Recent,
 }
@@ -244,7 +226,7 @@ pub struct SonarReading {
 pub(crate) struct Sonar {
     spec: SonarSpec,
     beams: Arc<Beams>,
-    /// Of all sensors of the robot.
+    /// Of all sonars of the robot.
     ring: Ring,
 }
 
@@ -278,7 +260,7 @@ impl Device for Sonar {
         }
     }
 
-    fn time_s(reading: &SonarReading) -> Option<f64> {
-        Some(reading.time_s)
+    fn time_s(reading: &SonarReading) -> f64 {
+        reading.time_s
     }
 }

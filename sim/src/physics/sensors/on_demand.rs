@@ -43,8 +43,8 @@ pub(crate) trait Device {
     /// Draws what a measurement draws.
     fn skip(&self, streams: &mut Self::Streams);
 
-    /// The time of a reading, s, if there need be no other reading of the same time.
-    fn time_s(reading: &Self::Reading) -> Option<f64>;
+    /// The time of a reading, s.
+    fn time_s(reading: &Self::Reading) -> f64;
 }
 
 /// A sensor whose readings are computed when they are first read. A reading has the same bits, whether the readings
@@ -114,7 +114,7 @@ impl<D: Device> OnDemand<D> {
     pub(super) fn has_measured(&self, time_s: f64) -> bool {
         let last_s = match &self.pending {
             Some(pending) => Some(pending.surroundings.time_s),
-            None => self.reading.as_ref().and_then(D::time_s),
+            None => self.reading.as_ref().map(D::time_s),
         };
         last_s == Some(time_s)
     }

@@ -13,7 +13,7 @@ pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, Push
 pub use robot::{
     DisplacementSpec, DriveKind, DriveLimits, LaserSpec, OdometryError, PatrolDaySpec, RobotSpec,
 };
-pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
+pub use senses::{BumperSpec, SonarSpec};
 
 use super::shape::{Rectangle, TOUCH_M, Transform, grid_corners};
 use interfaces::{GridFrame, rotation};

@@ -13,8 +13,6 @@ pub struct ObstacleSpec {
     pub shape: Rectangle,
     /// The motion of the obstacle.
     pub motion: Motion,
-    /// The tag that fiducial finders detect; `None` if they do not detect the obstacle.
-    pub tag: Option<u32>,
     /// The time at which the obstacle appears, s; `None` if it is present from the start.
     pub appears_s: Option<f64>,
     /// The time at which the obstacle disappears, s; `None` if it never disappears.
@@ -35,10 +33,10 @@ pub struct ThingPart {
 }
 
 impl ObstacleSpec {
-    /// An obstacle without a tag that is there from the start to the end.
+    /// An obstacle that is there from the start to the end.
     pub fn new(name: &str, shape: Rectangle, motion: Motion) -> Self {
         let name = name.to_owned();
-        Self { name, shape, motion, tag: None, appears_s: None, disappears_s: None, part: None }
+        Self { name, shape, motion, appears_s: None, disappears_s: None, part: None }
     }
 
     /// Whether the obstacle ever appears, disappears or moves.

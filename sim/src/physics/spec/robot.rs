@@ -1,6 +1,6 @@
 //! A robot and its parts.
 
-use super::{BehaviorSpec, BumperSpec, FiducialSpec, SonarSpec};
+use super::{BehaviorSpec, BumperSpec, SonarSpec};
 use crate::physics::form::Form;
 use calendar::Hours;
 use interfaces::Scan;
@@ -33,10 +33,6 @@ pub struct RobotSpec {
     pub bumper: Option<BumperSpec>,
     /// The sonars and infrared sensors.
     pub sonars: Vec<SonarSpec>,
-    /// The fiducial finder; `None` if there is none.
-    pub fiducial: Option<FiducialSpec>,
-    /// The tag that fiducial finders of other robots detect; `None` if they do not detect the robot.
-    pub tag: Option<u32>,
     /// The behavior of the robot.
     pub behavior: BehaviorSpec,
     /// The day of a driven robot: its dock, its battery and the orders of others; `None` if it is always free to drive.
@@ -101,8 +97,6 @@ impl RobotSpec {
             more_lasers: Vec::new(),
             bumper: None,
             sonars: Vec::new(),
-            fiducial: None,
-            tag: None,
             behavior,
             patrol: None,
         }
@@ -113,12 +107,11 @@ impl RobotSpec {
         Form::new(&self.corners, self.radius_m, pose)
     }
 
-    /// The longest range of a laser scanner, a sonar or the fiducial finder, m.
+    /// The longest range of a laser scanner or a sonar, m.
     pub(crate) fn range_m(&self) -> f64 {
         let lasers = self.lasers().map(|laser| laser.range_max_m);
         let sonars = self.sonars.iter().map(|sonar| sonar.range_max_m);
-        let finder = self.fiducial.iter().map(|finder| finder.range_max_m);
-        lasers.chain(sonars).chain(finder).fold(0.0, f64::max)
+        lasers.chain(sonars).fold(0.0, f64::max)
     }
 
     /// All laser scanners, the main one first.

@@ -1,4 +1,4 @@
-//! Sensors other than lasers: bumpers, sonars, fiducial finders.
+//! Sensors other than lasers: bumpers and sonars.
 
 use nalgebra::Isometry2;
 
@@ -26,17 +26,4 @@ pub struct SonarSpec {
     pub mount: Isometry2<f64>,
     /// The standard deviation of the range noise, m.
     pub noise_std_m: f64,
-}
-
-/// A sensor that detects bodies with a tag.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FiducialSpec {
-    /// The field of view, symmetrical to straight ahead, rad, in (0, 2π].
-    pub fov_rad: f64,
-    /// The maximum distance to the center of a body, m.
-    pub range_max_m: f64,
-    /// The number of physics steps from one measurement to the next; at least 1.
-    pub period_steps: u64,
-    /// The pose of the sensor in the frame of the robot, m and rad.
-    pub mount: Isometry2<f64>,
 }

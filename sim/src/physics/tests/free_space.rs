@@ -41,9 +41,8 @@ fn a_thing_with_a_schedule_is_not_in_the_way() {
     for starts_blocked in [false, true] {
         let thing = |name: &str, at: [f64; 4]| {
             let stays = [Stays::of_mean(600.0); 2];
-            let changes =
-                calendar::Changes::Habit(Habit { hours: Hours::always(), active: stays, quiet: stays });
-            let schedule = Schedule { changes, starts_blocked };
+            let habit = Habit { hours: Hours::always(), active: stays, quiet: stays };
+            let schedule = Schedule { habit, starts_blocked };
             ObstacleSpec::new(name, wall(at), Motion::Scheduled(Box::new(schedule)))
         };
         let mut fleet = spec.fleet().clone();

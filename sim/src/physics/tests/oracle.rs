@@ -56,8 +56,7 @@ pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: us
     let mut laser = Sensor::laser(&spec, &mut SharedBeams::default(), 0, 0);
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
     let (scene, recent) = (scene.clone(), Recent::default());
-    let surroundings =
-        Surroundings { step: 0, time_s: 0.0, scene, glass: Vec::new(), tagged: Vec::new(), recent };
+    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, glass: Vec::new(), recent };
     laser.measure(&Look::new(platform, Arc::new(surroundings)));
     laser.laser_reading().flatten().expect("a laser that has measured").scan.clone()
 }

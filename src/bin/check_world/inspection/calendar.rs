@@ -1,6 +1,6 @@
 //! The calendar of a world in words.
 
-use calendar::{Changes, Habit, Hours, Schedule, Stays, moment};
+use calendar::{Habit, Hours, Schedule, Stays, moment};
 use results::numbers::{duration, percent};
 use sim::physics::PatrolDaySpec;
 
@@ -12,21 +12,12 @@ pub(super) fn of_world(starts_s: f64) -> String {
 /// When a thing is blocked.
 pub(super) fn of_thing(schedule: &Schedule) -> String {
     let starts = if schedule.starts_blocked { "at the start" } else { "not at the start" };
-    match &schedule.changes {
-        Changes::Recorded(changes) => {
-            let last_s = changes.last().map_or(0.0, |(time_s, _)| *time_s);
-            format!("as recorded, {} changes in {}; {starts}", changes.len(), duration(last_s))
-        }
-        Changes::Habit(habit) if habit.hours == Hours::always() => {
-            format!("{}; {starts}", of_stays(&habit.active))
-        }
-        Changes::Habit(Habit { hours, active, quiet }) => format!(
-            "{}: {}; in other hours: {}; {starts}",
-            hours.texts().join(", "),
-            of_stays(active),
-            of_stays(quiet)
-        ),
+    let Habit { hours, active, quiet } = &schedule.habit;
+    if *hours == Hours::always() {
+        return format!("{}; {starts}", of_stays(active));
     }
+    let [active, quiet] = [active, quiet].map(of_stays);
+    format!("{}: {active}; in other hours: {quiet}; {starts}", hours.texts().join(", "))
 }
 
 /// The day of a robot.

@@ -91,7 +91,7 @@ fn invalid(error: String) -> Inspection {
 /// A TOML world file: a grid world if `map` is a drawing.
 fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let outcome = if worldfile::grid::is_grid_world(text) {
-        worldfile::grid::parse_with(name, text, files).map(|world| {
+        worldfile::grid::parse(name, text).map(|world| {
             (
                 grid::content(&world),
                 world.warnings().iter().map(|warning| format!("warning: {warning}")).collect(),

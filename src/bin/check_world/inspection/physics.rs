@@ -169,15 +169,10 @@ fn robot_line(robot: &RobotSpec) -> String {
     }));
     let poses = if robot.odometry.is_exact() { "poses are exact" } else { "its odometry drifts" };
     parts.push(poses.to_owned());
-    let others = [
-        (robot.sonars.len(), "sonar"),
-        (usize::from(robot.bumper.is_some()), "bumper"),
-        (usize::from(robot.fiducial.is_some()), "fiducial finder"),
-    ];
+    let others = [(robot.sonars.len(), "sonar"), (usize::from(robot.bumper.is_some()), "bumper")];
     parts.extend(
         others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
     );
-    parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
     parts.extend(robot.patrol.as_ref().map(calendar::of_robot));
     parts.join("; ")
 }

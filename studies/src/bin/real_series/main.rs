@@ -16,6 +16,7 @@
 
 mod hours;
 mod models;
+mod recorded;
 mod score;
 mod series;
 mod table;

@@ -1,6 +1,6 @@
 //! Series of events: what a thing did, and what a robot saw of it.
 
-use calendar::Recording;
+use crate::recorded::Recording;
 use interfaces::{Purpose, RandomStream};
 use mapper::{DAY_S, Look};
 use std::path::Path;

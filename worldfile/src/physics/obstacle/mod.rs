@@ -3,7 +3,6 @@
 mod block;
 mod door;
 
-use crate::files::Files;
 use crate::physics::kind::{KindOf, kind_of};
 use crate::physics::space::{MAX_TIME_S, Space, inside, upright};
 use crate::reader::{Table, valid};
@@ -11,7 +10,7 @@ use crate::schedule::schedule;
 use calendar::Schedule;
 use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle, ThingPart};
 
-pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
+pub(super) const KEYS: &str = "name, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
                                disappears_s, part_of, place, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
                                switches_s, move_s, starts_open, schedule, waits_for_robots";
@@ -19,7 +18,7 @@ pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, 
 /// The largest number of places of a thing.
 const MAX_PLACES: u32 = 100;
 
-/// The kinds of obstacles; all have a name, a tag and a kind as well.
+/// The kinds of obstacles; all have a name and a kind as well.
 const KINDS: [KindOf; 5] = [
     (
         "fixed",
@@ -47,8 +46,6 @@ struct Obstacle<'a> {
     table: &'a Table<'a>,
     name: &'a str,
     space: &'a Space,
-    /// The files beside the file.
-    files: &'a dyn Files,
     /// The obstacles before it in the file.
     before: &'a [(&'a Table<'a>, ObstacleSpec)],
 }
@@ -57,19 +54,18 @@ struct Obstacle<'a> {
 pub(super) fn obstacle<'a>(
     table: &'a Table<'a>,
     space: &'a Space,
-    files: &'a dyn Files,
     before: &'a [(&'a Table<'a>, ObstacleSpec)],
 ) -> Option<ObstacleSpec> {
-    let (name, tag) = (table.name(), table.tag());
+    let name = table.name();
     let kind = kind_of(table, &KINDS, "an obstacle")?;
-    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, files, before };
+    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, before };
     let spec = match kind {
         "block" => obstacle.block(),
         "hinged_door" | "sliding_door" => obstacle.door(kind == "hinged_door"),
         "box" => obstacle.pushed(),
         _ => obstacle.fixed(),
     };
-    table.sound(ObstacleSpec { tag, name: name?, ..spec? })
+    table.sound(ObstacleSpec { name: name?, ..spec? })
 }
 
 impl Obstacle<'_> {
@@ -103,7 +99,7 @@ impl Obstacle<'_> {
 
     /// The schedule of the obstacle, `Some(None)` if it has none. `others` are the keys that a schedule replaces.
     fn schedule(&self, others: &[&'static str]) -> Option<Option<Schedule>> {
-        let schedule = schedule(self.table, self.name, self.files)?;
+        let schedule = schedule(self.table, self.name)?;
         if schedule.is_some() {
             self.table.has_none_of(others, "schedule", self.name)?;
         }

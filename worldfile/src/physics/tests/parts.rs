@@ -150,11 +150,6 @@ fn senses() {
         ("sonar off the robot", with(&format!("{sonar}\nmount_m = [1.3, 0.0]"))),
         ("sonar between steps", with(&sonar.replace("10.0", "15.0"))),
         ("sonar as a table", with(&sonar.replace("[[robot.sonar]]", "[robot.sonar]"))),
-        (
-            "finder off the robot",
-            with("[robot.fiducial]\nrange_max_m = 3.0\nrate_hz = 10.0\nmount_m = [2.0, 0.0]"),
-        ),
-        ("wrong tag", with("").replacen("[robot.behavior]", "[robot.behavior]\ntag = 3", 1)),
     ];
     let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, at, to.as_str())).collect();
     compare("senses", &cases);

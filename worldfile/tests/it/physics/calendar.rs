@@ -3,20 +3,12 @@
 use super::fleet::{DRIVEN, robot};
 use super::*;
 use proptest::prelude::*;
-use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 const HOUR_S: f64 = 3600.0;
 const OFFICE: &str = include_str!("../../../../worlds/office_week.toml");
 
 fn office() -> WorldSpec {
     parse(OFFICE)
-}
-
-/// A world with doors that repeat recorded events.
-fn recorded(text: &str, events: &str) -> WorldSpec {
-    let events = BTreeMap::from([(PathBuf::from("door.csv"), events.as_bytes().to_vec())]);
-    worldfile::physics::parse_world_with("test.toml", text, &events).unwrap()
 }
 
 /// Whether the door of the workshop is closed.
@@ -138,16 +130,17 @@ fn open_doors(
     let door = |(index, [x, y, to_x, to_y]): (usize, &[f64; 4])| {
         format!(
             "[[obstacle]]\nname = \"{index}\"\nkind = \"hinged_door\"\nfrom_m = [{x:?}, {y:?}]\nto_m = [{to_x:?}, {to_y:?}]\n\
-             thickness_m = 0.05\nwaits_for_robots = true\n[obstacle.schedule]\nevents = \"door.csv\"\n"
+             thickness_m = 0.05\nwaits_for_robots = true\n[obstacle.schedule]\nhours = [\"Mon 8:00-24:00\"]\nfree_s = 1.0\n\
+             blocked_s = 1e9\nquiet_free_s = 1e9\nquiet_blocked_s = 1.0\nstarts_blocked = false\n"
         )
     };
     let leaves: String = doors.iter().enumerate().map(door).collect();
     let text = format!(
-        "name = \"doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = {size:?}\ncell_m = 0.05\n{walls}{leaves}{}\
+        "name = \"doors\"\nstarts = \"Mon 7:50\"\n[map]\nsize_m = {size:?}\ncell_m = 0.05\n{walls}{leaves}{}\
          [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = {dock:?}\n",
         robot("curious", at, 0.0, DRIVEN)
     );
-    let mut world = PhysicsWorld::new(&recorded(&text, "time_s,state\n0,0\n600,1\n"), 0);
+    let mut world = PhysicsWorld::new(&parse(&text), 0);
     world.rest(900.0);
     let middle_is_free = |[x, y, to_x, to_y]: &[f64; 4]| {
         state_at(&world, (x + to_x) / 2.0, (y + to_y) / 2.0) == TrueState::Free
@@ -204,21 +197,6 @@ fn a_week_goes_on_from_a_snapshot() {
     }
     assert!(block_events(&world) > 1000);
     assert!(state(world) == state(restored));
-}
-
-#[test]
-fn things_repeat_recorded_events() {
-    let (before, rest) = OFFICE.split_once("[obstacle.schedule]").unwrap();
-    let (_, after) = rest.split_once("# The door").unwrap();
-    for (more, expected) in [("", [false, true, false]), ("one_means = \"free\"\n", [true, false, true])] {
-        let text = format!("{before}[obstacle.schedule]\nevents = \"door.csv\"\n{more}\n# The door{after}");
-        let mut world = PhysicsWorld::new(&recorded(&text, "time_s,state\n1000,0\n1060,1\n1180,0\n"), 0);
-        let states = [59.0, 70.0, 190.0].map(|time_s| {
-            world.rest(time_s);
-            is_closed(&world)
-        });
-        assert_eq!(states, expected, "{more}");
-    }
 }
 
 proptest! {

@@ -73,7 +73,6 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("`robot.behavior`", "robot.behavior", "kind = \"driven\""),
     ("`robot.bumper`", "robot.bumper", "sectors = 4"),
     ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
-    ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
 
 /// The additional keys that a key needs, if the valid ones do not include them.
@@ -86,7 +85,6 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
         (_, "max_left_mps" | "max_left_acceleration_mps2") => format!("kind = \"omni\"\n{good}"),
         (_, "wheelbase_m" | "max_steer_deg") => format!("kind = \"car\"\nwheelbase_m = 1.0\n{good}"),
         (_, "slide_m") => good.replace("hinged", "sliding"),
-        ("`obstacle.schedule`", "one_means") => "events = \"events.csv\"".to_owned(),
         (_, "switches_s") => good.replace("random", "scripted").replace("closed_s = 1.0\nopen_s = 1.0", ""),
         (_, "place") => {
             let thing = format!("{good}\nschedule = {{ free_s = 9.0, blocked_s = 9.0 }}\n");
@@ -104,15 +102,8 @@ fn world(heading: &str, changed: &str) -> String {
     for (known, table, good) in GOOD {
         // These exist only where they are asked for.
         let is_optional = table.starts_with("obstacle")
-            || [
-                "floor_plan",
-                "robot.patrol",
-                "robot.odometry.jump",
-                "robot.bumper",
-                "robot.sonar",
-                "robot.fiducial",
-            ]
-            .contains(table);
+            || ["floor_plan", "robot.patrol", "robot.odometry.jump", "robot.bumper", "robot.sonar"]
+                .contains(table);
         let holds_it = *known == "`obstacle`" && heading == "`obstacle.schedule`";
         if (is_optional || table_of(heading) == *table) && *known != heading && !holds_it {
             continue;
@@ -131,8 +122,7 @@ fn world(heading: &str, changed: &str) -> String {
 
 fn parse(text: &str) -> Result<String, String> {
     let dot = (PathBuf::from("dot.pgm"), b"P2 1 1 255 0".to_vec());
-    let events = (PathBuf::from("events.csv"), b"time_s,state\n0,1\n5,0\n".to_vec());
-    let spec = worldfile::physics::parse_fleet_with("w.toml", text, &BTreeMap::from([dot, events]));
+    let spec = worldfile::physics::parse_fleet_with("w.toml", text, &BTreeMap::from([dot]));
     spec.map(|spec| format!("{spec:?}")).map_err(|error| error.to_string())
 }
 

@@ -1,4 +1,4 @@
-//! Bumpers, sonars and fiducial finders.
+//! Bumpers and sonars.
 
 use super::fleet::{house, robot};
 use super::snapshot::sensed;
@@ -6,8 +6,7 @@ use super::*;
 
 pub(super) const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
-    [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
-    [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]";
+    [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n[robot.behavior]";
 
 /// A robot at [1, 2] with all sensors, and further keys.
 fn place(more: &[String], things: &str) -> FleetSpec {
@@ -16,14 +15,14 @@ fn place(more: &[String], things: &str) -> FleetSpec {
     house(&robots, things)
 }
 
-fn tagged(name: &str, at: [f64; 2], tag: u32) -> String {
-    robot(name, at, 0.0, "kind = \"standing\"").replace("radius_m", &format!("tag = {tag}\nradius_m"))
+fn standing(name: &str, at: [f64; 2]) -> String {
+    robot(name, at, 0.0, "kind = \"standing\"")
 }
 
 #[test]
 fn a_sonar_hears_the_nearest_thing_in_its_cone() {
     // 0.5 m beside its axis, 2 m ahead: 14° off it; and one that is nearer, but beside the cone.
-    let others = [tagged("in", [3.0, 2.5], 1), tagged("beside", [2.0, 2.9], 2)];
+    let others = [standing("in", [3.0, 2.5]), standing("beside", [2.0, 2.9])];
     let mut fleet = Fleet::new(&place(&others, ""), 0);
     fleet.step(&mut ());
     let robot = fleet.robot(0).unwrap();
@@ -110,34 +109,12 @@ fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
     assert_eq!(pressed(&fleet), [true, false, false]);
 }
 
-#[test]
-fn tags_are_found_where_nothing_is_in_front() {
-    let others = [
-        tagged("ahead", [3.0, 2.0], 11),
-        tagged("hidden", [4.0, 2.0], 12),
-        tagged("beside", [2.0, 3.5], 13),
-        tagged("far", [5.5, 5.0], 14),
-        tagged("next room", [7.0, 1.0], 15),
-    ];
-    let crate_ = "[[obstacle]]\nname = \"crate\"\nkind = \"box\"\ncenter_m = [1.5, 0.5]\nsize_m = [0.3, 0.3]\nmass_kg = 1.0\ntag = 20\n\
-        [[obstacle]]\nname = \"behind\"\ncenter_m = [0.4, 3.0]\nsize_m = [0.3, 0.3]\ntag = 21\n";
-    let mut fleet = Fleet::new(&place(&others, crate_), 0);
-    fleet.step(&mut ());
-    let found = fleet.robot(0).unwrap().fiducials().copied().collect::<Vec<_>>();
-    let tags: Vec<u32> = found.iter().map(|found| found.tag).collect();
-    assert_eq!(tags, [11, 13, 20]);
-    assert_eq!(found[0].body, Body::Robot(1));
-    assert!((found[0].range_m - 2.0).abs() < 1e-6 && found[0].bearing_rad.abs() < 1e-6);
-    assert!((found[1].bearing_rad - libm::atan2(1.5, 1.0)).abs() < 1e-6);
-    assert_eq!(found[2].body, Body::Obstacle(0));
-}
-
 /// A reading is computed when it is first read, if at all: this never shows.
 #[test]
 fn readings_do_not_depend_on_which_readings_were_read() {
     let driven = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behavior]", SENSES);
     let free = robot("free", [4.0, 2.0], 1.0, "kind = \"wander\"\nspeed_mps = 0.3");
-    let robots = [driven, tagged("other", [2.0, 2.0], 1), free];
+    let robots = [driven, standing("other", [2.0, 2.0]), free];
     let robots =
         robots.map(|robot| robot.replace("noise_std_m = 0.005\n", "noise_std_m = 0.005\ndropout = 0.1\n"));
     let spec = house(&robots, "");

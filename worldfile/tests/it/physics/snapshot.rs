@@ -48,8 +48,7 @@ fn drivers(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
 /// All poses and readings.
 pub(super) fn sensed(fleet: &Fleet) -> (u64, Vec<String>) {
     let others = fleet.robots().map(|robot| {
-        let (lasers, sonars) = (robot.lasers().collect::<Vec<_>>(), robot.sonars().collect::<Vec<_>>());
-        format!("{lasers:?} {sonars:?} {:?}", robot.fiducials().collect::<Vec<_>>())
+        format!("{:?} {:?}", robot.lasers().collect::<Vec<_>>(), robot.sonars().collect::<Vec<_>>())
     });
     (hash(fleet), others.collect())
 }

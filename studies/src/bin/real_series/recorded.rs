@@ -3,16 +3,16 @@ const MAX_YEARS: f64 = 10.0;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
 /// The time of a change, s, and the new state: blocked (open, occupied) or not, `None` while nothing was recorded.
-pub type Change = (f64, Option<bool>);
+pub(crate) type Change = (f64, Option<bool>);
 
 /// What a real thing did: a file of comma-separated values `time_s,state`, one line per change. A first line with neither a
 /// time nor a state holds titles.
 ///
 /// A state is 0, 1 or nan (not recorded). Lines that begin with `#` are comments.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Recording {
+pub(crate) struct Recording {
     /// The changes in the order of time; at least one.
-    pub changes: Vec<Change>,
+    pub(crate) changes: Vec<Change>,
 }
 
 impl Recording {
@@ -22,25 +22,12 @@ impl Recording {
     ///
     /// When a line is not `time_s,state`, time goes backwards, the recording is longer than ten years or has no change. The
     /// message names the line, and what is valid.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let changes = changes(text)?;
         if changes.is_empty() {
             return Err("no events".to_owned());
         }
         Ok(Self { changes })
-    }
-
-    /// The changes with times that begin at 0, s. Where nothing was recorded, the last state stays.
-    pub fn known_changes(&self) -> Vec<(f64, bool)> {
-        let start_s = self.changes[0].0;
-        let known = self.changes.iter().filter_map(|(time_s, state)| Some((time_s - start_s, (*state)?)));
-        let mut changes: Vec<(f64, bool)> = Vec::new();
-        for (time_s, is_blocked) in known {
-            if changes.last().map_or(is_blocked, |(_, before)| *before != is_blocked) {
-                changes.push((time_s, is_blocked));
-            }
-        }
-        changes
     }
 }
 
