@@ -118,23 +118,26 @@ impl TrajectoryFinder {
         self
     }
 
-    /// Adds the next reading. An invalid reading gets the pose of the odometry.
-    pub fn add(&mut self, reading: LaserReading) {
-        let state = match self.builder.add(&reading, ()) {
-            Some((_, found)) if found.is_supported => PoseState::Tracking,
-            Some(_) => PoseState::Uncertain,
+    /// Adds the next reading. An invalid reading gets the pose of the odometry. Returns the reading as the laser would have measured it
+    /// at once, at the end of the sweep.
+    pub fn add(&mut self, reading: LaserReading) -> LaserReading {
+        let time_s = reading.time_s;
+        let (deskewed, state) = match self.builder.add(&reading, ()) {
+            Some((deskewed, found)) if found.is_supported => (deskewed, PoseState::Tracking),
+            Some((deskewed, _)) => (deskewed, PoseState::Uncertain),
             None => {
                 if self.keyframes().is_empty() {
                     self.builder.matcher.begin_without_scan(&reading, &self.builder.track);
                 }
-                PoseState::Lost
+                (reading, PoseState::Lost)
             }
         };
         self.add_keyframes();
-        let (keyframe, time_s) = (self.graph.poses.len() - 1, reading.time_s);
+        let keyframe = self.graph.poses.len() - 1;
         let offset = self.builder.matcher.offset(&self.builder.track);
         self.readings.push(Attached { time_s, keyframe, offset, state });
         self.search_loops();
+        deskewed
     }
 
     /// Adds new keyframes to the graph.

@@ -5,7 +5,9 @@ use crate::quality::{Quality, QualityCheck, Verdict};
 use crate::range_noise::RangeNoise;
 use crate::settings::{SurveyError, SurveySettings};
 use interfaces::{GridFrame, LaserReading, PoseMode, Scan, heading_rad, wrap_rad};
-use localizer::{DistanceScale, LocalizerSettings, PoseState, Trajectory, TrajectoryFinder, TrajectoryPose};
+use localizer::{
+    DistanceScale, GivenPoses, LocalizerSettings, PoseState, Trajectory, TrajectoryFinder, TrajectoryPose,
+};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
@@ -127,6 +129,7 @@ pub struct FirstPass {
     /// Finds the trajectory; `None` where the poses of the log are used.
     finder: Option<TrajectoryFinder>,
     given: Vec<TrajectoryPose>,
+    deskew: GivenPoses,
     range_noise: RangeNoise,
     quality: QualityCheck,
     reaches: Vec<Reach>,
@@ -156,6 +159,7 @@ impl FirstPass {
             filter: settings.scan_filter(),
             finder,
             given: Vec::new(),
+            deskew: GivenPoses::default(),
             range_noise: RangeNoise::default(),
             quality: QualityCheck::default(),
             reaches: Vec::new(),
@@ -177,20 +181,20 @@ impl FirstPass {
         let reach = Reach::of(&filtered);
         self.reaches.push(reach);
         self.turns.add(&reading);
-        let found = match &mut self.finder {
+        let (deskewed, found) = match &mut self.finder {
             Some(finder) => {
-                finder.add(reading.clone());
-                finder.newest()
+                let deskewed = finder.add(reading);
+                (deskewed, finder.newest())
             }
             None => {
                 self.range_noise.add(&reading);
                 let (time_s, pose, state) = (reading.time_s, reading.pose, PoseState::Tracking);
                 self.given.push(TrajectoryPose { time_s, pose, state });
-                self.given.last().copied()
+                (self.deskew.deskewed(reading), self.given.last().copied())
             }
         };
         if let Some(found) = &found {
-            self.quality.add(&reading, &found.pose);
+            self.quality.add(&deskewed, &found.pose);
         }
         let certain = found.filter(|found| found.state == PoseState::Tracking);
         if let Some(found) = &certain {

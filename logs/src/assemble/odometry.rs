@@ -160,15 +160,19 @@ impl Odometry {
 
     /// Whether a later pose can be nearer to this time, where the log is read until `now_s`.
     pub fn must_wait(&self, time_s: f64, now_s: f64) -> bool {
-        self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && now_s - last_s < LONGEST_GAP_S)
+        self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && now_s - time_s < LONGEST_GAP_S)
     }
 
-    /// The pose and the velocity at a time; the newest pose where the time is not between two poses.
+    /// The pose and the velocity at a time; the nearer pose in a long time without one, and the newest pose after all.
     fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
         let around = |pair: &&[(f64, Isometry2<f64>)]| pair[0].0 <= time_s && time_s <= pair[1].0;
         match self.samples.windows(2).rev().find(around) {
             Some([from, to]) if to.0 - from.0 <= LONGEST_GAP_S && to.0 > from.0 => {
                 between(from, to, (time_s - from.0) / (to.0 - from.0))
+            }
+            Some([from, to]) => {
+                let nearer = if time_s - from.0 <= to.0 - time_s { from } else { to };
+                (nearer.1, Twist::STOP)
             }
             _ => self.newest(),
         }
