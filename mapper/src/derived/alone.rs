@@ -9,7 +9,10 @@ const MAX_CELLS: usize = 1 << 12;
 
 /// What is known of cells that are things of their own, kept until the next reading: a resting robot has none, and is asked often.
 #[derive(Debug, Default)]
-pub(crate) struct Alone(Mutex<(ReadingIndex, BTreeMap<usize, Option<Arc<Posterior>>>)>);
+pub(crate) struct Alone(Mutex<(ReadingIndex, Cells)>);
+
+/// By their indices; `None` of a cell that is no thing of its own.
+type Cells = BTreeMap<usize, Option<Arc<Posterior>>>;
 
 impl Clone for Alone {
     fn clone(&self) -> Self {
