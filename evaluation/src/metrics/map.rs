@@ -32,7 +32,7 @@ pub fn map_scores(mapper: &Mapper, truth: &impl GroundTruth) -> MapScores {
     for index in visible_cells(truth) {
         let state = mapper.states().cells()[index];
         cells += 1;
-        seen += usize::from(state != CellState::Unknown || mapper.was_ever_seen(index));
+        seen += usize::from(mapper.was_ever_seen(index));
         correct += usize::from(is_correct(state, truth.state(index)) == Some(true));
     }
     let share = |count: usize| count as f64 / cells.max(1) as f64;
