@@ -1,11 +1,9 @@
-use crate::convert::{Numbers, SnapshotError, pose_array, rows_array, value_error};
+use crate::convert::{Numbers, pose_array, rows_array, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
-use crate::snapshots::Kind;
 use localizer::{Localized, LocalizerSettings, PoseEstimate, PoseState, Start};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 /// Odometry, scans and a map that changes: the pose of the robot, with its uncertainty.
 ///
@@ -36,8 +34,6 @@ pub(crate) struct Estimate {
     /// The reading at this pose; all of its beams belong to the pose.
     reading: Py<Reading>,
 }
-
-const SNAPSHOT: Kind = Kind("localizer");
 
 #[pymethods]
 impl Localizer {
@@ -81,22 +77,6 @@ impl Localizer {
     /// Begins another session in the same place, at a pose that is not known.
     fn begin_session(&mut self) {
         self.localizer.begin_session();
-    }
-
-    /// Everything that readings have changed, as bytes.
-    fn snapshot<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        SNAPSHOT.seal(py, &self.localizer.snapshot())
-    }
-
-    /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; nothing
-    /// changes then.
-    fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        let mut restored = self.localizer.clone();
-        restored.restore(SNAPSHOT.open(snapshot, true)?).map_err(|_| {
-            SnapshotError::new_err("the snapshot was taken of a localizer with another map or other settings")
-        })?;
-        self.localizer = restored;
-        Ok(())
     }
 }
 

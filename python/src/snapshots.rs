@@ -1,6 +1,6 @@
 //! Snapshots as bytes of Python: what the state is of, the state, a checksum.
 //!
-//! Users keep snapshots in files and send them over networks. The values of a mapper or a localizer refer to each other: with a
+//! Users keep snapshots in files and send them over networks. The values of a mapper refer to each other: with a
 //! changed byte, a later call could fail.
 
 use crate::convert::SnapshotError;

@@ -1,13 +1,11 @@
-use crate::convert::{from_json, grid, optional_index, pose_array, snapshot_error, value_error, whole};
+use crate::convert::{from_json, grid, optional_index, pose_array, value_error, whole};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
-use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::metrics::{MapScores, RateScores, map_scores, rate_scores};
 use interfaces::{GroundTruth, TrueState, Twist, World as _};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 use sim::physics::PhysicsWorld;
 
 /// A world in which one robot is driven, with the ground truth of every cell.
@@ -24,8 +22,6 @@ struct Scores {
     #[serde(flatten)]
     map: MapScores,
 }
-
-const SNAPSHOT: Kind = Kind("world");
 
 #[pymethods]
 impl World {
@@ -132,24 +128,6 @@ impl World {
     fn reset(&mut self, py: Python<'_>, #[pyo3(from_py_with = whole)] seed: u64) {
         let world = &mut self.world;
         py.detach(|| world.reset(seed));
-    }
-
-    /// The state as bytes.
-    fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let world = &self.world;
-        SNAPSHOT.seal(py, &py.detach(|| world.snapshot().into_bytes()))
-    }
-
-    /// Returns to a snapshot of the same world. `SnapshotError`: the bytes are not one, or were written by another build of
-    /// the package; nothing changes then.
-    #[pyo3(signature = (snapshot, *, allow_other_build = false))]
-    fn restore(&mut self, py: Python<'_>, snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
-        let world = &mut self.world;
-        let mut restored = world.clone();
-        let state = SNAPSHOT.open(snapshot, allow_other_build)?;
-        py.detach(|| restored.restore(state)).map_err(snapshot_error)?;
-        *world = restored;
-        Ok(())
     }
 
     fn __repr__(&self) -> String {

@@ -194,14 +194,6 @@ def test_a_world_has_ground_truth():
     assert states[0, 0] == 1 and rates.max() > 0.0
     reading = world.sense()
     np.testing.assert_allclose(reading.pose, world.true_pose, atol=1e-9)
-    snapshot = world.snapshot()
-    world.act(0.5, 0.0)
-    later = world.sense().ranges
-    with pytest.raises(curious.SnapshotError):
-        world.restore(snapshot[:-1])
-    world.restore(snapshot)
-    world.act(0.5, 0.0)
-    np.testing.assert_array_equal(world.sense().ranges, later)
 
 
 def test_a_world_has_one_driven_robot(fleet_toml):
