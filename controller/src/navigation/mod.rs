@@ -232,12 +232,12 @@ impl NavigationTask {
             return;
         }
         let past = planner.plan_past(input.map, &position, &self.goal, &blocked, path);
-        let most_s = 0.5 * (self.timeout_s - self.elapsed_s(input));
+        let longest_s = 0.5 * (self.timeout_s - self.elapsed_s(input));
         let patience_s = past.map_or(0.0, |(way_m, at)| match detour_s(way_m) {
             detour_s if detour_s > DETOUR_S => {
                 // Cells of the same obstacle can belong to nothing yet.
                 let near = blocked.iter().filter(|cell| planner.is_near(&at, **cell));
-                near.map(|cell| known.patience(*cell, detour_s)).fold(0.0, f64::max).min(most_s)
+                near.map(|cell| known.patience(*cell, detour_s)).fold(0.0, f64::max).min(longest_s)
             }
             _ => 0.0,
         });

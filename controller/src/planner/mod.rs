@@ -142,7 +142,7 @@ impl Planner {
     }
 
     /// Plans as if these blocked cells were free, up to the place where the robot has to wait for that. Returns the length of the whole
-    /// path, m, and the point where its way is blocked; `None`, with any path, if no path leads to the goal even then, or if none is in its way.
+    /// path, m, and the point where its way is blocked; `None`, with any path, if no path leads to the goal even then, or if the way is free.
     pub fn plan_past(
         &mut self,
         map: &Grid<CellState>,
@@ -176,6 +176,7 @@ impl Planner {
     /// Whether a blocked cell can make a point lethal.
     pub fn is_near(&self, point: &Point2<f64>, cell: Cell) -> bool {
         let frame = self.costmap().frame();
+        // A quarter of the reach of an exit is the distance of a blocked cell that makes a cell lethal.
         let reach = f64::from(self.exit_reach / 4 + 1);
         distance_squared(frame.cell_at(point), cell) <= reach * reach
     }

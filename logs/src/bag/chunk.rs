@@ -24,8 +24,14 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    /// Reads a chunk of `len` bytes, of which the file has `available`. Its checksum is compared before anything in it is used.
-    pub(super) fn read(input: &mut dyn Read, len: u64, available: u64) -> Usable<Self> {
+    /// Reads a chunk of `len` bytes, of which the file has `available`. Its checksum is compared before anything in it is used. What it
+    /// unpacks to is added to `unpacked_bytes`, also if it is damaged.
+    pub(super) fn read(
+        input: &mut dyn Read,
+        len: u64,
+        available: u64,
+        unpacked_bytes: &mut u64,
+    ) -> Usable<Self> {
         if len.min(available) > MAX_PACKED {
             return Err(format!("a chunk of {len} bytes; at most {MAX_PACKED} are read"));
         }
@@ -44,6 +50,7 @@ impl Chunk {
         if unpacked > MAX_UNPACKED {
             return Err(format!("a chunk of {unpacked} bytes, unpacked; at most {MAX_UNPACKED} are read"));
         }
+        *unpacked_bytes = unpacked_bytes.saturating_add(unpacked);
         let start = BEFORE_NAME + 4 + compression.len() + 8;
         if !is_cut && packed > (bytes.len() - start) as u64 {
             return Err(format!("the records of a chunk have {packed} bytes, but the chunk has {len}"));

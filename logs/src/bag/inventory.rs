@@ -1,7 +1,7 @@
 //! The first pass over a bag: which topics and frames there are.
 
 use super::files::BagFile;
-use super::message::{Kind, Message, Selection, Topic, Usable};
+use super::message::{Kind, Message, Topic, Usable};
 use super::messages::{Messages, RecordedOrder};
 use crate::assemble::Frames;
 use crate::bounds;
@@ -54,7 +54,7 @@ const MAX_SOURCES: usize = 64;
 impl Inventory {
     pub(super) fn of(files: &[BagFile]) -> Result<Self, LogError> {
         let is_wanted = Arc::new(|topic: &Topic| Kind::of_readable(topic).is_some());
-        let mut messages = Messages::new(files.to_vec(), Selection { is_wanted });
+        let mut messages = Messages::new(files.to_vec(), is_wanted);
         let mut inventory = Self::default();
         while let Some(message) = messages.next_message()? {
             inventory.order.note(&message);

@@ -4,7 +4,7 @@
 //! allocate gigabytes.
 
 use super::chunk::{Chunk, Fields, Records};
-use super::message::{Message, MessageSource, Selection, Topic};
+use super::message::{IsWanted, Message, MessageSource, Topic};
 use crate::bounds::{MAX_NAME_BYTES, max_chunk_bytes};
 use crate::bytes::{Bytes, Input, MCAP as MAGIC};
 use crate::summary::LogError;
@@ -62,7 +62,7 @@ struct Content {
     file: Arc<str>,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
-    selection: Selection,
+    is_wanted: IsWanted,
 }
 
 /// What stops the reading of a record.
@@ -84,7 +84,7 @@ impl From<io::Error> for Stop {
 }
 
 impl McapFile {
-    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, selection: Selection) -> Result<Self, LogError> {
+    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, is_wanted: IsWanted) -> Result<Self, LogError> {
         let io = |why| LogError::Io { file: file.to_string(), why };
         let mut input = BufReader::with_capacity(1 << 16, bytes.open().map_err(io)?);
         let size = input.seek(SeekFrom::End(0)).map_err(io)?;
@@ -92,7 +92,7 @@ impl McapFile {
         let is_complete = ends_with_magic(&mut input, size).map_err(io)?;
         input.seek(SeekFrom::Start(start)).map_err(io)?;
         let (schemas, channels) = (BTreeMap::new(), BTreeMap::new());
-        let content = Content { file: file.clone(), schemas, channels, selection };
+        let content = Content { file: file.clone(), schemas, channels, is_wanted };
         Ok(Self {
             input,
             size,
@@ -134,12 +134,7 @@ impl McapFile {
             }
             CHUNK => {
                 let available = self.size - (self.record + 9).min(self.size);
-                let chunk = match Chunk::read(&mut self.input, length, available) {
-                    Ok(chunk) => chunk,
-                    Err(_) if length > available => return Err(Stop::Cut),
-                    Err(what) => return self.leave_out(what),
-                };
-                self.unpacked = self.unpacked.saturating_add(chunk.remaining);
+                let chunk = Chunk::read(&mut self.input, length, available, &mut self.unpacked);
                 let most = max_chunk_bytes(self.size);
                 if self.unpacked > most {
                     let (unpacked, size) = (self.unpacked, self.size);
@@ -148,7 +143,11 @@ impl McapFile {
                     );
                     return Err(Stop::Invalid(what));
                 }
-                self.chunk = Some(chunk);
+                match chunk {
+                    Ok(chunk) => self.chunk = Some(chunk),
+                    Err(_) if length > available => return Err(Stop::Cut),
+                    Err(what) => return self.leave_out(what),
+                }
                 Ok(None)
             }
             _ if self.next > self.size => Err(Stop::Cut),
@@ -185,11 +184,12 @@ impl McapFile {
         self.input.seek(SeekFrom::Start(u64::from_le_bytes(start).max(MAGIC.len() as u64)))?;
         loop {
             match self.input.next_start()? {
-                (code @ (SCHEMA | CHANNEL), length) => {
+                (FOOTER, _) => return Ok(()),
+                (code @ (SCHEMA | CHANNEL), length) if length <= MAX_CLAIMED => {
                     self.content.take(&mut self.input, code, length)?;
                 }
-                (FOOTER, _) => return Ok(()),
-                (_, length) => self.input.skip(length)?,
+                (_, length) if length <= MAX_CLAIMED => self.input.skip(length)?,
+                _ => return Err(Stop::Cut),
             }
         }
     }
@@ -254,7 +254,7 @@ impl Content {
             let topic = Topic { name: fields.name()?, type_name, encoding: fields.name()? };
             // Channels are defined again in later chunks.
             if self.channels.get(&id).is_none_or(|known| *known.topic != topic) {
-                let is_wanted = (self.selection.is_wanted)(&topic);
+                let is_wanted = (self.is_wanted)(&topic);
                 self.channels.insert(id, Channel { topic: Arc::new(topic), is_wanted, messages: 0 });
             }
             Ok(())

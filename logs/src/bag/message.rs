@@ -17,12 +17,8 @@ pub(super) struct Topic {
 /// A part of a bag, or why the bag cannot be used.
 pub(super) type Usable<T> = Result<T, String>;
 
-/// What a pass over a bag needs.
-#[derive(Clone)]
-pub(super) struct Selection {
-    /// Whether the messages of a topic are wanted; others are skipped.
-    pub(super) is_wanted: Arc<dyn Fn(&Topic) -> bool + Send + Sync>,
-}
+/// Whether the messages of a topic are wanted; others are skipped.
+pub(super) type IsWanted = Arc<dyn Fn(&Topic) -> bool + Send + Sync>;
 
 /// A message.
 #[derive(Clone, Debug)]

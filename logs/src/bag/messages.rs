@@ -3,7 +3,7 @@
 
 use super::files::{BagFile, Format};
 use super::mcap::McapFile;
-use super::message::{Kind, Message, MessageSource, Selection, Topic, Usable};
+use super::message::{IsWanted, Kind, Message, MessageSource, Topic, Usable};
 use super::sqlite::SqliteFile;
 use crate::bytes::ZSTD;
 use crate::summary::LogError;
@@ -20,26 +20,26 @@ const MAX_TOPICS: usize = 1 << 16;
 pub(super) struct Messages {
     files: IntoIter<BagFile>,
     current: Option<Box<dyn MessageSource + Send>>,
-    selection: Selection,
+    is_wanted: IsWanted,
     /// All topics, also those that are not wanted.
     pub(super) topics: Vec<Arc<Topic>>,
     pub(super) notes: Vec<String>,
 }
 
 impl Messages {
-    pub(super) fn new(files: Vec<BagFile>, selection: Selection) -> Self {
+    pub(super) fn new(files: Vec<BagFile>, is_wanted: IsWanted) -> Self {
         let files = files.into_iter();
-        Self { files, current: None, selection, topics: Vec::new(), notes: Vec::new() }
+        Self { files, current: None, is_wanted, topics: Vec::new(), notes: Vec::new() }
     }
 
     pub(super) fn next_message(&mut self) -> Result<Option<Message>, LogError> {
         loop {
             let Some(current) = &mut self.current else {
                 let Some(file) = self.files.next() else { return Ok(None) };
-                let selection = self.selection.clone();
+                let is_wanted = self.is_wanted.clone();
                 self.current = Some(match file.format {
-                    Format::Mcap => Box::new(McapFile::open(&file.name, &file.bytes, selection)?),
-                    Format::Sqlite => Box::new(SqliteFile::open(&file.name, &file.bytes, selection)?),
+                    Format::Mcap => Box::new(McapFile::open(&file.name, &file.bytes, is_wanted)?),
+                    Format::Sqlite => Box::new(SqliteFile::open(&file.name, &file.bytes, is_wanted)?),
                 });
                 continue;
             };
@@ -129,7 +129,7 @@ impl Merged {
         is_wanted: impl Fn(&Topic) -> bool + Send + Sync + 'static,
         by_topic: &[Arc<Topic>],
     ) -> Self {
-        let stream = |is_wanted| (Messages::new(files.to_vec(), Selection { is_wanted }), None);
+        let stream = |is_wanted: IsWanted| (Messages::new(files.to_vec(), is_wanted), None);
         if by_topic.is_empty() {
             return Self { streams: vec![stream(Arc::new(is_wanted))] };
         }

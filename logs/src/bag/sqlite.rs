@@ -1,6 +1,6 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`. Of a file that is cut off, the messages before the cut are read.
 
-use super::message::{Message, MessageSource, Selection, Topic, Usable};
+use super::message::{IsWanted, Message, MessageSource, Topic, Usable};
 use crate::bounds::{self, MAX_NAME_BYTES};
 use crate::bytes::Bytes;
 use crate::summary::LogError;
@@ -57,7 +57,7 @@ struct MessageTable {
 }
 
 impl SqliteFile {
-    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, selection: Selection) -> Result<Self, LogError> {
+    pub(super) fn open(file: &Arc<str>, bytes: &Bytes, is_wanted: IsWanted) -> Result<Self, LogError> {
         let failed = |error| database_error(file, &error);
         let io = |why| LogError::Io { file: file.to_string(), why };
         let path = bytes.path().ok_or_else(|| io(io::ErrorKind::Unsupported.into()))?;
@@ -85,7 +85,7 @@ impl SqliteFile {
             file: file.clone(),
             size,
             whole,
-            topics: topics(&database, file, &selection)?,
+            topics: topics(&database, file, &is_wanted)?,
             page: VecDeque::new(),
             last: None,
             last_row: i64::MIN,
@@ -174,7 +174,7 @@ fn is_stored(database: &Connection, name: &str) -> rusqlite::Result<bool> {
 }
 
 /// The topics by their keys, whether they are wanted, and no message of them yet.
-fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Result<Topics, LogError> {
+fn topics(database: &Connection, file: &Arc<str>, is_wanted: &IsWanted) -> Result<Topics, LogError> {
     let failed = |error| database_error(file, &error);
     let mut found = BTreeMap::new();
     let mut statement = database.prepare(TOPICS).map_err(failed)?;
@@ -187,7 +187,7 @@ fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Resu
         }
         let text = |column: usize| row.get::<_, String>(column).map_err(failed);
         let topic = Topic { name: text(2)?, type_name: text(3)?, encoding: text(4)? };
-        let is_wanted = (selection.is_wanted)(&topic);
+        let is_wanted = is_wanted(&topic);
         found.insert(row.get(0).map_err(failed)?, (Arc::new(topic), is_wanted, 0));
     }
     Ok(found)

@@ -15,9 +15,14 @@ fn text(bytes: &[u8]) -> Vec<u8> {
 
 /// A file with a chunk of these records.
 fn file(chunks: &[Vec<u8>]) -> Vec<u8> {
+    file_with_sum(chunks, [0; 4])
+}
+
+/// A file with these checksums of the chunks; 0: none.
+fn file_with_sum(chunks: &[Vec<u8>], sum: [u8; 4]) -> Vec<u8> {
     let chunk = |records: &Vec<u8>| {
         let packed = zstd::encode_all(&records[..], 0).unwrap();
-        let head = [&[0; 16][..], &(records.len() as u64).to_le_bytes(), &[0; 4], &text(b"zstd")].concat();
+        let head = [&[0; 16][..], &(records.len() as u64).to_le_bytes(), &sum, &text(b"zstd")].concat();
         record(6, &[&head[..], &(packed.len() as u64).to_le_bytes(), &packed].concat())
     };
     let end = [record(15, &[0; 4]), record(2, &[0; 20]), b"\x89MCAP0\r\n".to_vec()].concat();
@@ -52,6 +57,25 @@ fn chunks_that_unpack_to_more_than_a_thousand_times_the_file_are_refused() {
     let zeros = record(9, &vec![0; 40 << 20]);
     let error = refused(&file(&[zeros.clone(), zeros.clone(), zeros]));
     assert!(error.contains("the chunks so far unpack to 83886098 bytes; at most"), "{error}");
+}
+
+#[test]
+fn damaged_chunks_count_among_those_that_unpack_to_too_much() {
+    let zeros = record(9, &vec![0; 40 << 20]);
+    let error = refused(&file_with_sum(&[zeros.clone(), zeros.clone(), zeros], [1; 4]));
+    assert!(error.contains("the chunks so far unpack to 83886098 bytes; at most"), "{error}");
+}
+
+#[test]
+fn a_summary_that_leads_backward_ends() {
+    let mut bytes = file_with_sum(&[record(9, &[0; 40])], [1; 4]);
+    let footer = bytes.len() - 8 - 29;
+    // A record that claims to end where it begins.
+    let backward = [&[11][..], &(-9_i64).to_le_bytes(), &[0; 40]].concat();
+    bytes.splice(footer..footer, backward);
+    let at = bytes.len() - 8 - 20;
+    bytes[at..at + 8].copy_from_slice(&(footer as u64).to_le_bytes());
+    assert!(refused(&bytes).contains("the checksum of a chunk does not match"), "{}", refused(&bytes));
 }
 
 #[test]
