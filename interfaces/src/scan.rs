@@ -1,3 +1,6 @@
+/// The bits of a NaN that mean nothing.
+const NAN_BITS: u32 = 0x003f_ffff;
+
 /// One scan of a planar laser, as ROS `sensor_msgs/LaserScan`, with the meaning of REP-117.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Scan {
@@ -13,7 +16,8 @@ pub struct Scan {
     /// The time from the measurement of the first beam to that of the last beam, s. 0: all beams were measured at once.
     /// The beams are measured in order and at equal intervals; the time of the reading is that of the last beam.
     pub sweep_s: f64,
-    /// One range per beam, m: +∞ no return, −∞ too close, NaN invalid measurement.
+    /// One range per beam, m: +∞ no return, −∞ too close, NaN invalid measurement; [`Self::free_to`] says how far such a beam is
+    /// free.
     pub ranges_m: Vec<f32>,
 }
 
@@ -27,6 +31,17 @@ impl Scan {
     pub fn age_s(&self, index: usize) -> f64 {
         let last = self.ranges_m.len().saturating_sub(1);
         self.sweep_s * (last.saturating_sub(index) as f64 / last.max(1) as f64)
+    }
+
+    /// The range of a beam whose hit does not count, and which is free up to there, m: NaN, so that who does not know the
+    /// distance, in mm in the bits that say nothing of a NaN, takes the beam as an invalid measurement.
+    pub fn free_to(clear_m: f64) -> f32 {
+        f32::from_bits(f32::NAN.to_bits() | (clear_m * 1e3).clamp(0.0, f64::from(NAN_BITS)) as u32)
+    }
+
+    /// How far a beam with an invalid range is free, m: 0 but for [`Self::free_to`].
+    pub fn free_m(invalid: f32) -> f64 {
+        if invalid.is_nan() { f64::from(invalid.to_bits() & NAN_BITS) / 1e3 } else { 0.0 }
     }
 
     /// Whether the beams cover a full turn, so that the last beam is a neighbor of the first. The tolerance is a

@@ -25,13 +25,16 @@ impl BeamReturn {
     }
 
     fn of(range_m: f32, scan: &Scan) -> Self {
-        let range_m = f64::from(range_m);
+        let (range_m, invalid) = (f64::from(range_m), range_m);
         if range_m == f64::INFINITY {
             Self::Clear(scan.range_max_m.min(FARTHEST_M))
         } else if range_m >= scan.range_min_m && range_m <= scan.range_max_m.min(FARTHEST_M) {
             Self::Hit(range_m)
         } else {
-            Self::Nothing // also NaN and −∞
+            match Scan::free_m(invalid) {
+                0.0 => Self::Nothing, // also −∞
+                clear_m => Self::Clear(clear_m),
+            }
         }
     }
 }

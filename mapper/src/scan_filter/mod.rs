@@ -107,6 +107,8 @@ impl ScanFilter {
 
     /// Removes from the next reading what must not enter a map.
     pub fn apply(&mut self, reading: &mut LaserReading) {
+        let invalid = reading.scan.ranges_m.iter_mut().filter(|range_m| range_m.is_nan());
+        invalid.for_each(|range_m| *range_m = f32::NAN); // a sensor does not say how far such a beam is free
         self.last = self.learns.then(|| reading.clone());
         self.no_returns.apply(reading); // before ranges that are too long become free ones
         if self.settings.min_shadow_angle_rad > 0.0 {
@@ -120,7 +122,7 @@ impl ScanFilter {
         }
     }
 
-    /// Marks veils and hits beside edges as invalid.
+    /// Removes veils and hits beside edges: of such a beam stays the free part up to the near surface.
     fn remove_jumps(&mut self, scan: &mut Scan) {
         let jumps = Jumps::new(scan, self.settings.min_shadow_angle_rad);
         let (mut removed, count) = jumps.veils();
@@ -133,7 +135,9 @@ impl ScanFilter {
         if self.settings.edge_m > 0.0 {
             removed.extend(jumps.beside_edges(self.settings.edge_m));
         }
-        removed.into_iter().for_each(|beam| scan.ranges_m[beam] = f32::NAN);
+        // Beside two edges, the nearer one counts.
+        removed.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
+        removed.into_iter().for_each(|(beam, clear_m)| scan.ranges_m[beam] = Scan::free_to(clear_m));
     }
 
     /// Removes from a reading whose pose in the map is certain the beams without a return that pass a known surface.

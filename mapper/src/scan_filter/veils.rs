@@ -42,14 +42,15 @@ impl Jumps {
     }
 
     /// The veils: hits between a near and a far surface, where nothing is. A beam that meets the edge of the near surface
-    /// hits it in part, and in part the surface behind: the laser reports a range between both. Also the number of jumps.
-    pub(super) fn veils(&self) -> (Vec<usize>, usize) {
+    /// hits it in part, and in part the surface behind: the laser reports a range between both. With the range of the near
+    /// surface, m; also the number of jumps.
+    pub(super) fn veils(&self) -> (Vec<(usize, f64)>, usize) {
         let (mut veils, mut jumps, mut before) = (Vec::new(), 0, self.is_jump(-1, 0));
         for beam in 0..self.beams {
             let after = self.is_jump(beam, beam + 1);
             jumps += usize::from(after);
             if (before || after) && self.is_veil(beam) {
-                veils.push(beam as usize);
+                veils.push((beam as usize, self.range_m(beam - 1).min(self.range_m(beam + 1))));
             }
             before = after;
         }
@@ -57,8 +58,8 @@ impl Jumps {
     }
 
     /// The hits on the far side of a jump, nearer to the edge of the near surface than `edge_m` across the beams. A thing
-    /// that stands out there has a jump of its own: it and what is beyond it stay.
-    pub(super) fn beside_edges(&self, edge_m: f64) -> Vec<usize> {
+    /// that stands out there has a jump of its own: it and what is beyond it stay. With the range of the edge, m.
+    pub(super) fn beside_edges(&self, edge_m: f64) -> Vec<(usize, f64)> {
         let mut beside = Vec::new();
         for (edge, side) in (0..self.beams).flat_map(|beam| [(beam, -1), (beam, 1)]) {
             let near_m = self.range_m(edge);
@@ -72,7 +73,7 @@ impl Jumps {
             };
             let far = far.take_while(|beam| *beam == edge + side || !is_nearer(*beam));
             let behind = far.filter(|beam| self.range_m(*beam) > near_m);
-            beside.extend(behind.filter_map(|beam| self.index(beam)));
+            beside.extend(behind.filter_map(|beam| Some((self.index(beam)?, near_m))));
         }
         beside
     }

@@ -74,8 +74,12 @@ pub(crate) fn scan(
 /// Outer walls, and a cross of inner walls with a door of 1 m in each arm.
 pub(crate) fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
     let (t, s) = (thickness_m, 12.0);
-    // The inner walls are on cell borders for any thickness.
-    let (a, b) = (6.0 - (t / 2.0 / CELL_M).floor() * CELL_M, 6.0 + (t / 2.0 / CELL_M).ceil() * CELL_M);
+    // The inner walls are on cell borders, but thin ones within a cell.
+    let (a, b) = if t < CELL_M {
+        (6.01, 6.01 + t)
+    } else {
+        (6.0 - (t / 2.0 / CELL_M).floor() * CELL_M, 6.0 + (t / 2.0 / CELL_M).ceil() * CELL_M)
+    };
     vec![
         rectangle(0.0, 0.0, s, t),
         rectangle(0.0, s - t, s, s),

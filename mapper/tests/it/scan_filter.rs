@@ -1,6 +1,6 @@
 //! The scan filter: thin things and walls stay, veils go.
 
-use interfaces::{GridFrame, LaserReading};
+use interfaces::{GridFrame, LaserReading, Scan};
 use mapper::{Mapper, MapperSettings, NoReturn, ScanFilter, ScanFilterSettings};
 use nalgebra::{Isometry2, Point2};
 
@@ -31,10 +31,12 @@ fn with_veils(edge_m: f64) -> ScanFilter {
     filter
 }
 
-/// The beams that the filter removes, counted from the first one that is not of the room.
+/// The beams that the filter removes, counted from the first one that is not of the room. They stay free up to a thing.
 fn removed(filter: &mut ScanFilter, of: &[f32]) -> Vec<usize> {
     let filtered = filter.filter(reading(room(of))).scan.ranges_m;
-    (0..300).filter(|beam| filtered[*beam].is_nan()).map(|beam| beam.wrapping_sub(10)).collect()
+    let is_near = |beam: &usize| (2.0..=3.0).contains(&Scan::free_m(filtered[*beam]));
+    assert!((0..300).all(|beam| !filtered[beam].is_nan() || is_near(&beam)));
+    (0..300).filter(is_near).map(|beam| beam.wrapping_sub(10)).collect()
 }
 
 #[test]

@@ -174,6 +174,7 @@ impl SurfaceGrid {
             surface.hit_at = now;
             let evidence = &mut self.evidence[index];
             if *evidence <= 0 {
+                surface.partly_free = *evidence < 0 && cells.state(index) == CellState::Free;
                 *evidence = 0;
                 (surface.doubted_since, surface.doubted_in_view) = (now, in_view);
                 if cells.state(index) == CellState::Free {

@@ -8,7 +8,12 @@ use crate::occupancy::footprint::beyond_fan;
 use crate::occupancy::inverse_sensor_model::passes;
 use crate::occupancy::projection::ProjectedScan;
 use interfaces::{CellState, GridFrame};
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
+
+/// A free cell that was passed only in part is tried again after this number of scans.
+const MISSES_TO_PASS: i8 = 16;
+/// The part of a cell's side that must be passed: in the rest is the noise of the walls beside.
+const WHOLE: f64 = 0.8;
 
 impl SurfaceGrid {
     /// Counts the cells that the beams passed (rule 2).
@@ -47,10 +52,15 @@ impl SurfaceGrid {
         match cells.state(index) {
             CellState::Free => {
                 cells.observe(index);
-                let evidence = (self.evidence[index] - 1).max(0);
+                let evidence = match self.evidence[index] {
+                    1 if self.surfaces[index].partly_free => -1,
+                    hits if hits > 0 => hits - 1,
+                    misses if misses > -MISSES_TO_PASS => misses - 1,
+                    _ => self.free_evidence(index, scan, cells.frame()),
+                };
                 self.evidence.set(index, evidence);
                 if let Some(surface) = self.surfaces.stored_mut(index) {
-                    surface.hits = evidence as u16;
+                    surface.hits = evidence.max(0) as u16;
                 }
                 cells.set_settled(index, evidence == 0);
             }
@@ -63,8 +73,9 @@ impl SurfaceGrid {
                 let evidence = &mut self.evidence[index];
                 *evidence = (*evidence).min(0) - 1;
                 if *evidence <= -misses {
-                    *evidence = 0;
-                    cells.set_settled(index, true);
+                    let evidence = self.free_evidence(index, scan, cells.frame());
+                    self.evidence.set(index, evidence);
+                    cells.set_settled(index, evidence == 0);
                     cells.set_state(index, CellState::Free, now, false);
                 }
             }
@@ -97,11 +108,34 @@ impl SurfaceGrid {
         neighbours.into_iter().filter_map(|near| frame.index(near)).any(|near| self.surfaces[near].hits > 0)
     }
 
+    /// The evidence of a free cell without hits: 0 if the scan passes all of it, else −1.
+    fn free_evidence(&self, index: usize, scan: &ProjectedScan, frame: &GridFrame) -> i8 {
+        let (center, reach_m) = (frame.center(frame.cell(index)), WHOLE * frame.resolution_m() / 2.0);
+        let mut corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].into_iter();
+        let passes = |corner: Point2<f64>| passes(scan, &corner, 0.0, frame.resolution_m(), SURFACE_DEPTH_M);
+        -i8::from(!corners.all(|(x, y)| passes(center + reach_m * Vector2::new(x, y))))
+    }
+
     /// Whether the scan passes through the surface in a blocked cell.
     fn is_passed(&self, index: usize, scan: &ProjectedScan, frame: &GridFrame) -> bool {
         let [x, y] = self.surfaces[index].point_m;
         let surface = frame.origin() + Vector2::new(f64::from(x), f64::from(y));
         let margin_m = SURFACE_DEPTH_M.max(2.0 * self.settings.range_noise_std_m);
-        passes(scan, &surface, margin_m, MAX_GAP_M, SURFACE_DEPTH_M)
+        // Between two beams can be the end of a thin wall, but hardly a thing that was seen to come.
+        let gap_m = if self.surfaces[index].came { MAX_GAP_M } else { frame.resolution_m() };
+        passes(scan, &surface, margin_m, gap_m, SURFACE_DEPTH_M)
+            && !self.is_beside(&surface, margin_m + self.settings.range_noise_std_m, scan)
+    }
+
+    /// Whether a surface of the scan is nearer to the point than `across_m`: the other face of the same thin wall. A beam that
+    /// grazes it goes far beyond the point, and does not pass it.
+    fn is_beside(&self, point: &Point2<f64>, across_m: f64, scan: &ProjectedScan) -> bool {
+        let Some((left, right)) = scan.enclosing(point) else { return false };
+        [left, right].into_iter().any(|beam| {
+            self.segmentation.ends[beam].is_some_and(|end| {
+                let normal = self.segmentation.normal(beam, &end, scan);
+                normal.is_some_and(|normal| normal.dot(&(end - point)).abs() < across_m)
+            })
+        })
     }
 }

@@ -60,6 +60,8 @@ const HITS_TO_STAND: u16 = 20;
 /// A first observation that is contradicted after less than this time in view, s, and less than [`MIN_CONFIRMING`] readings, was
 /// wrong. The state is corrected, which does not count as a change.
 const CONFIRM_S: f64 = 2.0;
+/// The same for a free cell that was passed only in part: most of a cell behind a thin wall is free.
+const CONFIRM_PARTLY_S: f64 = 20.0;
 /// The mean of the hit points is taken over about this number of hits.
 const SURFACE_MEMORY: u16 = 32;
 /// A first observation needs at least this number of readings to be confirmed, however long they take.
@@ -78,6 +80,8 @@ struct Surface {
     surface_at: ReadingIndex,
     /// Whether the cell was free before, so that the surface is that of a new obstacle.
     came: bool,
+    /// Whether the free cell was passed only in part before its first hit.
+    partly_free: bool,
     /// The reading at which the evidence against the present state began, and whether the cell was in view then.
     doubted_since: ReadingIndex,
     doubted_in_view: bool,
@@ -88,7 +92,8 @@ struct Surface {
 pub(super) struct SurfaceGrid {
     settings: SurfaceGridSettings,
     surfaces: Surfaces,
-    /// For an unknown or free cell: the number of consecutive hits (above 0) or misses (below 0). For a blocked
+    /// For an unknown or free cell: the number of consecutive hits (above 0) or misses (below 0; of a free cell only until a
+    /// scan passes all of it, [`Self::free_evidence`]). For a blocked
     /// cell: the number of misses left until the cell becomes free. Apart from the surfaces, because every cell that was seen has
     /// evidence, and most have no surface.
     evidence: SparseCells<i8>,
@@ -137,7 +142,8 @@ impl SurfaceGrid {
 
     /// Whether the first observation of a cell can still be wrong.
     fn is_unconfirmed(&self, index: usize, cells: &CellMap) -> bool {
-        cells.is_unconfirmed(index, CONFIRM_S.max(MIN_CONFIRMING * cells.period()))
+        let confirm_s = if self.surfaces[index].partly_free { CONFIRM_PARTLY_S } else { CONFIRM_S };
+        cells.is_unconfirmed(index, confirm_s.max(MIN_CONFIRMING * cells.period()))
     }
 }
 
