@@ -135,9 +135,13 @@ impl ScanFilter {
         if self.settings.edge_m > 0.0 {
             removed.extend(jumps.beside_edges(self.settings.edge_m));
         }
+        // A pose can be wrong along the beam as well as across.
+        let before_m = 2.0 * self.settings.edge_m;
         // Beside two edges, the nearer one counts.
         removed.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
-        removed.into_iter().for_each(|(beam, clear_m)| scan.ranges_m[beam] = Scan::free_to(clear_m));
+        removed
+            .into_iter()
+            .for_each(|(beam, clear_m)| scan.ranges_m[beam] = Scan::free_to(clear_m - before_m));
     }
 
     /// Removes from a reading whose pose in the map is certain the beams without a return that pass a known surface.

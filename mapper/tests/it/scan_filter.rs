@@ -34,7 +34,7 @@ fn with_veils(edge_m: f64) -> ScanFilter {
 /// The beams that the filter removes, counted from the first one that is not of the room. They stay free up to a thing.
 fn removed(filter: &mut ScanFilter, of: &[f32]) -> Vec<usize> {
     let filtered = filter.filter(reading(room(of))).scan.ranges_m;
-    let is_near = |beam: &usize| (2.0..=3.0).contains(&Scan::free_m(filtered[*beam]));
+    let is_near = |beam: &usize| (1.8..=3.0).contains(&Scan::free_m(filtered[*beam]));
     assert!((0..300).all(|beam| !filtered[beam].is_nan() || is_near(&beam)));
     (0..300).filter(is_near).map(|beam| beam.wrapping_sub(10)).collect()
 }

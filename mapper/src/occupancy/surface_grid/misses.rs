@@ -14,6 +14,8 @@ use nalgebra::{Point2, Vector2};
 const MISSES_TO_PASS: i8 = 16;
 /// The part of a cell's side that must be passed: in the rest is the noise of the walls beside.
 const WHOLE: f64 = 0.8;
+/// A surface is the other face of a thin wall up to this distance along it, m: less than a doorway.
+const BESIDE_M: f64 = 0.5;
 
 impl SurfaceGrid {
     /// Counts the cells that the beams passed (rule 2).
@@ -53,6 +55,7 @@ impl SurfaceGrid {
             CellState::Free => {
                 cells.observe(index);
                 let evidence = match self.evidence[index] {
+                    0 => 0,
                     1 if self.surfaces[index].partly_free => -1,
                     hits if hits > 0 => hits - 1,
                     misses if misses > -MISSES_TO_PASS => misses - 1,
@@ -133,8 +136,8 @@ impl SurfaceGrid {
         let Some((left, right)) = scan.enclosing(point) else { return false };
         [left, right].into_iter().any(|beam| {
             self.segmentation.ends[beam].is_some_and(|end| {
-                let normal = self.segmentation.normal(beam, &end, scan);
-                normal.is_some_and(|normal| normal.dot(&(end - point)).abs() < across_m)
+                let (to, normal) = (end - point, self.segmentation.normal(beam, &end, scan));
+                to.norm() < BESIDE_M && normal.is_some_and(|normal| normal.dot(&to).abs() < across_m)
             })
         })
     }
