@@ -7,7 +7,7 @@
 
 use super::projection::ProjectedScan;
 use super::segmentation::Segmentation;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Evidence of a hit for the cell of the hit, in log-odds: p = 0.7.
@@ -27,11 +27,12 @@ pub(super) fn hit_point(
     beam: usize,
     end: &Point2<f64>,
     depth_m: f64,
+    normal: Option<Vector2<f64>>,
     segmentation: &Segmentation,
     scan: &ProjectedScan,
 ) -> Point2<f64> {
     let along_beam = scan.directions[beam];
-    let Some(normal) = segmentation.normal(beam, end, scan) else {
+    let Some(normal) = normal else {
         return end + along_beam * (depth_m / 2.0);
     };
     let inward = segmentation.inward(beam, end, scan);

@@ -50,7 +50,8 @@ impl SurfaceGrid {
             }
             return;
         }
-        let point = hit_point(beam, &end, SURFACE_DEPTH_M, &self.segmentation, scan);
+        let normal = self.segmentation.normal(beam, &end, scan);
+        let point = hit_point(beam, &end, SURFACE_DEPTH_M, normal, &self.segmentation, scan);
         // A surface in a cell is an observation of the cell, even if the hit counts for the cell behind: a cell
         // that an obstacle enters stays in view.
         if let Some(index) = index_at(end, cells).filter(|&index| cells.state(index) != CellState::Unknown) {
@@ -62,6 +63,7 @@ impl SurfaceGrid {
         } else {
             self.hit_open(index, &end, point, cells);
         }
+        self.face(index, normal);
         self.note_new(beam, index, cells);
         if self.segmentation.joined[beam] {
             self.support_between(beam, point, scan, cells);
@@ -199,6 +201,17 @@ impl SurfaceGrid {
                 surface.came = cells.state(index) == CellState::Free;
                 cells.set_state(index, CellState::Blocked, surface.doubted_since, surface.doubted_in_view);
             }
+        }
+    }
+
+    /// Remembers to which side the surface of a cell looks: to none if it has two faces.
+    fn face(&mut self, index: usize, normal: Option<Vector2<f64>>) {
+        let (Some(normal), Some(surface)) = (normal, self.surfaces.stored_mut(index)) else { return };
+        let [x, y] = surface.facing.map(f64::from);
+        if surface.hits <= 1 {
+            surface.facing = [normal.x, normal.y].map(|side| (side * 100.0) as i8);
+        } else if x * normal.x + y * normal.y < 0.0 {
+            surface.facing = [0; 2];
         }
     }
 

@@ -127,17 +127,22 @@ impl SurfaceGrid {
         // Between two beams can be the end of a thin wall, but hardly a thing that was seen to come.
         let gap_m = if self.surfaces[index].came { MAX_GAP_M } else { frame.resolution_m() };
         passes(scan, &surface, margin_m, gap_m, SURFACE_DEPTH_M)
-            && !self.is_beside(&surface, margin_m + self.settings.range_noise_std_m, scan)
+            && !self.is_other_face(index, &surface, margin_m + self.settings.range_noise_std_m, scan)
     }
 
-    /// Whether a surface of the scan is nearer to the point than `across_m`: the other face of the same thin wall. A beam that
-    /// grazes it goes far beyond the point, and does not pass it.
-    fn is_beside(&self, point: &Point2<f64>, across_m: f64, scan: &ProjectedScan) -> bool {
+    /// Whether the scan sees the other face of a thin wall, nearer to the point on this face than `across_m`: a beam that grazes
+    /// it goes far beyond the point, and does not pass it.
+    fn is_other_face(&self, index: usize, point: &Point2<f64>, across_m: f64, scan: &ProjectedScan) -> bool {
         let Some((left, right)) = scan.enclosing(point) else { return false };
+        let [x, y] = self.surfaces[index].facing.map(f64::from);
         [left, right].into_iter().any(|beam| {
             self.segmentation.ends[beam].is_some_and(|end| {
                 let (to, normal) = (end - point, self.segmentation.normal(beam, &end, scan));
-                to.norm() < BESIDE_M && normal.is_some_and(|normal| normal.dot(&to).abs() < across_m)
+                normal.is_some_and(|normal| {
+                    x * normal.x + y * normal.y < 0.0
+                        && to.norm() < BESIDE_M
+                        && normal.dot(&to).abs() < across_m
+                })
             })
         })
     }

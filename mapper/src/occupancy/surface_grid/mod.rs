@@ -72,6 +72,8 @@ const MIN_CONFIRMING: f64 = 5.0;
 struct Surface {
     /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
     point_m: [f32; 2],
+    /// The normal of the surface, toward the sensor, in hundredths; 0 if both faces were seen.
+    facing: [i8; 2],
     /// The number of scans with a hit in this cell since the cell was last free.
     hits: u16,
     /// The reading of the last hit.
