@@ -1,6 +1,6 @@
 //! Code that the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
 
-use crate::terminal::{check_printed, print, say};
+use crate::terminal::{check_printed, note, print, say};
 use anyhow::{Context, anyhow};
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -55,7 +55,7 @@ pub fn not_opened(error: OutputError) -> Failure {
 /// As [`RunFolder::open`].
 pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
     let folder = RunFolder::open(out).map_err(not_opened)?;
-    folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {note}")));
+    folder.notes().iter().for_each(note);
     Ok(folder)
 }
 

@@ -4,11 +4,27 @@
 use anyhow::Context;
 use interfaces::{printable, printable_lines};
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Write, stdout};
+use std::io::{self, ErrorKind, Write, stderr, stdout};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Prints lines to the error output. A failure is ignored: there is no other place to report it.
 pub fn say(mut to: impl Write, what: impl Display) {
     let _ = writeln!(to, "{}", printable_lines(&what.to_string()));
+}
+
+/// Whether only errors are printed.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on, only errors are printed: `--quiet`.
+pub fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Prints a note to the error output, unless only errors are printed.
+pub fn note(what: impl Display) {
+    if !QUIET.load(Ordering::Relaxed) {
+        say(stderr(), format_args!("note: {what}"));
+    }
 }
 
 /// Prints one line to the standard output: a line break in a name forges no other one.

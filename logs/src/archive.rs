@@ -8,13 +8,21 @@ use std::io::{self, BufReader, Read};
 /// The bytes by which a file is known: a tar archive has its name after 257 bytes.
 const HEAD: u64 = 512;
 /// The name of a format, its first bytes and the number of bytes before them, and what to do with it.
-const FORMATS: [(&str, &[u8], usize, &str); 9] = [
+const FORMATS: [(&str, &[u8], usize, &str); 12] = [
     (
         "bag of ROS 1",
         b"#ROSBAG V",
         0,
         "convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)",
     ),
+    (
+        "bag of ROS before 0.11",
+        b"#ROSRECORD V",
+        0,
+        "convert it with `rosbag migrate` of ROS 1, and the result with `rosbags-convert --src FILE.bag --dst FOLDER`",
+    ),
+    ("MATLAB file", b"MATLAB 5.0 MAT-file", 0, MATLAB),
+    ("MATLAB file", b"MATLAB 7.3 MAT-file", 0, MATLAB),
     ("tar archive", b"ustar", 257, "unpack it with `tar -xf FILE`"),
     ("zip archive", b"PK\x03\x04", 0, "unpack it with `unzip FILE`"),
     ("zip archive", b"PK\x05\x06", 0, "unpack it with `unzip FILE`"),
@@ -25,6 +33,9 @@ const FORMATS: [(&str, &[u8], usize, &str); 9] = [
     ("RAR archive", b"Rar!\x1a\x07", 0, "unpack it with `unrar x FILE`"),
 ];
 
+const MATLAB: &str =
+    "read it with `scipy.io.loadmat` or h5py, and write a CARMEN log or a bag (docs/bags.md)";
+
 /// What a file is, and what would be right; `None` for a log, and for what is not known.
 ///
 /// # Errors
@@ -34,6 +45,7 @@ pub(crate) fn named(bytes: &Bytes) -> io::Result<Option<String>> {
     let start = head(bytes.open()?);
     let packed = BufReader::new(bytes.open()?);
     let (inside, compression) = match () {
+        () if start.is_empty() => return Ok(Some("an empty file: copy the log again".to_owned())),
         () if start.starts_with(&GZIP) => (head(MultiGzDecoder::new(packed)), "gzip"),
         () if start.starts_with(&ZSTD) => (head(zstd::stream::read::Decoder::with_buffer(packed)?), "zstd"),
         () => return Ok(format(&start).map(|(name, what)| format!("a {name}; {what}"))),
@@ -95,13 +107,16 @@ pub(crate) mod tests {
         assert_eq!(what(&zstd), what(&gzipped(ROS1)).replace("gzip", "zstd"));
         insta::assert_snapshot!(what(&gzipped(&tar)), @"a tar archive, compressed with gzip: after `gzip -d FILE`, unpack it with `tar -xf FILE`");
         insta::assert_snapshot!(what(b"PK\x03\x04"), @"a zip archive; unpack it with `unzip FILE`");
+        insta::assert_snapshot!(what(b"MATLAB 7.3 MAT-file, Platform"), @"a MATLAB file; read it with `scipy.io.loadmat` or h5py, and write a CARMEN log or a bag (docs/bags.md)");
+        insta::assert_snapshot!(what(b""), @"an empty file: copy the log again");
+        assert!(what(b"#ROSRECORD V1.1\n").starts_with("a bag of ROS before 0.11; "));
         insta::assert_snapshot!(what(&gzipped(MCAP)), @"a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`");
     }
 
     #[test]
     fn logs_are_no_archives() {
         for log in
-            [CARMEN, &gzipped(CARMEN), MCAP, &zstd::encode_all(MCAP, 0).unwrap(), b"", b"\x1f\x8b", b"hello"]
+            [CARMEN, &gzipped(CARMEN), MCAP, &zstd::encode_all(MCAP, 0).unwrap(), b"\x1f\x8b", b"hello"]
         {
             assert_eq!(what(log), "a log, or not known");
         }

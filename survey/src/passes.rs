@@ -173,7 +173,8 @@ fn around(first: &Route, settings: &SurveySettings) -> Result<GridFrame, SurveyE
 ///
 /// When many motions differ: scans were put together where they do not belong, or all lengths are wrong.
 fn check_odometry(found: &[TrajectoryPose], odometry: &[Isometry2<f64>]) -> Result<(), SurveyError> {
-    let (mut last, mut differing, mut ratios) = (None, Vec::new(), Vec::new());
+    let (mut last, mut differing) = (None, Vec::new());
+    let [mut ratios, mut turn_ratios] = [const { Vec::new() }; 2];
     let [mut moved_m, mut turned_rad] = [0.0; 2];
     for (at, pose) in found.iter().zip(odometry) {
         if at.state != PoseState::Tracking {
@@ -197,6 +198,9 @@ fn check_odometry(found: &[TrajectoryPose], odometry: &[Isometry2<f64>]) -> Resu
         if odometry_m > MIN_APART {
             ratios.push(found_m / odometry_m);
         }
+        if odometry_rad > MIN_APART {
+            turn_ratios.push(found_rad / odometry_rad);
+        }
     }
     let steps = differing.len();
     let (moves, turns) = (moved_m > STEP_M, turned_rad > STEP_RAD);
@@ -207,7 +211,8 @@ fn check_odometry(found: &[TrajectoryPose], odometry: &[Isometry2<f64>]) -> Resu
     Err(SurveyError::OtherOdometry {
         differing,
         steps,
-        ratio: median(ratios.into_iter()).unwrap_or_default(),
+        ratio: median(ratios.into_iter()).unwrap_or(1.0),
+        turn_ratio: median(turn_ratios.into_iter()).unwrap_or(1.0),
     })
 }
 

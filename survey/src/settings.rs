@@ -119,7 +119,7 @@ pub enum SurveyError {
     /// The odometry does not move as the scans do.
     #[error(
         "the odometry moves otherwise than the scans: in {differing} of {steps} steps of 0.5 m or 0.5 rad (the scans move \
-         {ratio:.2} times as far); check the units (m, rad), and whether both are of one robot; a log without odometry is \
+         {ratio:.2} times as far and turn {turn_ratio:.2} times as much); check the units (m, rad), and whether both are of one robot; a log without odometry is \
          mapped by its scans alone"
     )]
     OtherOdometry {
@@ -129,5 +129,7 @@ pub enum SurveyError {
         steps: usize,
         /// The median length of the motions by scans, per length by odometry.
         ratio: f64,
+        /// The median angle of the turns by scans, per angle by odometry.
+        turn_ratio: f64,
     },
 }

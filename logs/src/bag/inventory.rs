@@ -120,6 +120,14 @@ pub(super) fn no_scans(topics: &[Arc<Topic>]) -> String {
     if topics.is_empty() {
         return "no message: the bag is empty".to_owned();
     }
+    let silent = listed(
+        topics.iter().filter(|topic| Kind::of(topic) == Some(Kind::Scans)).map(|topic| topic.name.as_str()),
+    );
+    if topics.iter().any(|topic| Kind::of(topic) == Some(Kind::Scans) && topic.encoding == "cdr") {
+        return format!(
+            "no message of sensor_msgs/msg/LaserScan on {silent}: was the laser's driver running?"
+        );
+    }
     if topics.iter().any(|topic| Kind::of(topic) == Some(Kind::Scans) && topic.encoding != "cdr") {
         let encodings = listed(topics.iter().map(|topic| match Kind::of(topic) {
             Some(Kind::Scans) => topic.encoding.as_str(),
@@ -150,5 +158,5 @@ pub(super) fn no_scans(topics: &[Arc<Topic>]) -> String {
         );
     }
     let types = listed(topics.iter().map(|topic| topic.type_name.as_str()));
-    format!("no message of sensor_msgs/msg/LaserScan; there are {types}")
+    format!("no message of sensor_msgs/msg/LaserScan, encoded as cdr, which is what is read; there are {types}")
 }

@@ -322,7 +322,8 @@ impl MessageSource for McapFile {
 
     fn report(&self) -> (Vec<Arc<Topic>>, Option<String>) {
         let damaged = self.damaged.as_ref().map(|(count, first)| {
-            format!("{} is damaged: {count} chunks are left out, {first}", self.content.file)
+            let chunks = if *count == 1 { "1 chunk is".to_owned() } else { format!("{count} chunks are") };
+            format!("{} is damaged: {chunks} left out, {first}", self.content.file)
         });
         let missing: Vec<String> = damaged.into_iter().chain(self.missing.clone()).collect();
         let topics = self.content.channels.values().map(|channel| channel.topic.clone()).collect();

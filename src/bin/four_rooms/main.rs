@@ -7,6 +7,7 @@ mod parts;
 use args::{Args, DriveChoice};
 use cli::flags::check_distinct;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
+use cli::terminal::be_quiet;
 use curious::worlds::list_physics_worlds;
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::Twist;
@@ -36,6 +37,9 @@ enum Ended {
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
+    if args.quiet {
+        be_quiet();
+    }
     let Args { rrd, gif, mcap, state, .. } = args;
     let files = [("--rrd", rrd), ("--gif", gif), ("--mcap", mcap), ("--state", state)];
     let files = files.map(|(flag, file)| (flag, file.as_deref()));

@@ -7,7 +7,7 @@ use anyhow::Context;
 use cli::bag::RunBag;
 use cli::program::{Failure, arguments, input, not_opened, results_folder};
 use cli::progress::Progress;
-use cli::terminal::{print_lines, say};
+use cli::terminal::{note, print_lines, say};
 use draw::Film;
 use draw::layers::Layer;
 use draw::pictures::FIGURE_5_FILE;
@@ -70,7 +70,7 @@ impl<'a> Outputs<'a> {
         let trajectories = ["trajectory.tum", "trajectory_true.tum"].map(file);
         let reported = show.live_problem();
         if let Some(problem) = &reported {
-            say(stderr(), format_args!("note: {problem}"));
+            note(problem);
         }
         let progress = Progress::of_time(args.duration, args.quiet).from(began_s);
         if began_s > 0.0 && !args.quiet {
@@ -151,7 +151,7 @@ impl<'a> Outputs<'a> {
         if let Some(problem) =
             self.show.live_problem().filter(|problem| Some(problem) != self.reported.as_ref())
         {
-            say(stderr(), format_args!("note: {problem}"));
+            note(problem);
         }
         let mut failures = Vec::new();
         if let Some(Err(problem)) = self.state_file.take().map(|file| file.finish(&mut trial)) {

@@ -77,7 +77,7 @@ fn frames_in_a_cycle_and_tilted_lasers_are_refused() {
 fn what_is_there_instead_of_scans_is_said() {
     let mut bag = Builder::default();
     bag.mount();
-    insta::assert_snapshot!(bag.refused(), @"test: no message of sensor_msgs/msg/LaserScan; there are tf2_msgs/msg/TFMessage");
+    insta::assert_snapshot!(bag.refused(), @"test: no message of sensor_msgs/msg/LaserScan, encoded as cdr, which is what is read; there are tf2_msgs/msg/TFMessage");
     let mut points = bag.clone();
     points.messages.push(("/velodyne_points".into(), "sensor_msgs/msg/PointCloud2".into(), 0, Vec::new()));
     insta::assert_snapshot!(points.refused(), @"test: no scan of a plane (sensor_msgs/msg/LaserScan), but points in 3D (sensor_msgs/msg/PointCloud2 on /velodyne_points), which are not read: play the bag through `ros2 run pointcloud_to_laserscan pointcloud_to_laserscan_node --ros-args -r cloud_in:=/velodyne_points -p target_frame:=base_link -p min_height:=0.1 -p max_height:=0.5`, and record /scan, /tf, /tf_static and the odometry (`ros2 bag record`)");

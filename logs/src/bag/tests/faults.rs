@@ -112,7 +112,7 @@ fn damaged_records_are_named_by_their_offset() {
         bytes[at..at + to.len()].copy_from_slice(to);
         assert_has(
             &refused(&bytes),
-            &[&format!("1 chunks are left out, the first one at byte {chunk}: {says}")],
+            &[&format!("1 chunk is left out, the first one at byte {chunk}: {says}")],
         );
     }
 }
@@ -142,7 +142,7 @@ fn what_is_whole_beside_damaged_chunks_is_read() {
                 notes(&bag)
             );
             let expected =
-                format!("test is damaged: 1 chunks are left out, the first one at byte {}: ", chunk.start);
+                format!("test is damaged: 1 chunk is left out, the first one at byte {}: ", chunk.start);
             assert!(notes(&bag).contains(&expected), "{}", notes(&bag));
         }
     }

@@ -2,10 +2,9 @@
 
 use anyhow::{bail, ensure};
 use cli::progress::Progress;
-use cli::terminal::say;
+use cli::terminal::note;
 use interfaces::printable;
 use logs::{Log, TopicChoice};
-use std::io::stderr;
 use std::path::{Path, PathBuf};
 use survey::{LogEntry, Survey};
 
@@ -33,10 +32,7 @@ pub(crate) fn open(
         let log = Log::open(file, choice);
         drop(reading);
         let log = log?;
-        log.summary()
-            .notes
-            .iter()
-            .for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.display())));
+        log.summary().notes.iter().for_each(|what| note(format_args!("{}: {what}", file.display())));
         if let Some(why) = &log.summary().impossible {
             bail!("{}: {why}", file.display());
         }
@@ -73,7 +69,7 @@ fn check_choice(sources: &[Source], choice: &TopicChoice) -> anyhow::Result<()> 
             sources.iter().any(|other| !other.log.summary().scan_topics.is_empty()),
             "{what}: leave it out"
         );
-        say(stderr(), format_args!("note: {what}"));
+        note(what);
     }
     Ok(())
 }
@@ -118,13 +114,13 @@ pub(crate) fn continued(mut sources: Vec<Source>, survey: &mut Survey) -> anyhow
         let mut learned = survey.logs().iter().filter(|log| log.is_finished());
         let is_learned = learned.any(|log| log.entry.content == source.entry.content);
         if is_learned {
-            say(stderr(), format_args!("note: {} is learned already", source.entry.name));
+            note(format_args!("{} is learned already", source.entry.name));
         }
         !is_learned
     });
     if sources.is_empty() {
         let shown = "the results show what was learned before, without a trajectory";
-        say(stderr(), format_args!("note: nothing is added; {shown}"));
+        note(format_args!("nothing is added; {shown}"));
     }
     // Routes that were found hold for the same logs in the same order.
     let begun = survey.logs().iter().take_while(|log| log.used > 0).count();
@@ -145,12 +141,9 @@ pub(crate) fn continued(mut sources: Vec<Source>, survey: &mut Survey) -> anyhow
         // Its run ended between both passes. A log that is given again finds its place anew.
         if !sources.iter().any(|source| source.entry.content == log.entry.content) {
             let name = &log.entry.name;
-            say(
-                stderr(),
-                format_args!(
-                    "note: {name} is left out: its run ended before anything was learned of it; give it again"
-                ),
-            );
+            note(format_args!(
+                "{name} is left out: its run ended before anything was learned of it; give it again"
+            ));
         }
     }
     survey.forget_from(kept);
@@ -197,9 +190,9 @@ fn place(entry: &mut LogEntry, before: &[LogEntry]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn add_note(notes: &mut Vec<String>, note: String) {
-    say(stderr(), format_args!("note: {note}"));
-    notes.push(note);
+fn add_note(notes: &mut Vec<String>, what: String) {
+    note(&what);
+    notes.push(what);
 }
 
 fn short_name(file: &Path) -> String {

@@ -14,8 +14,9 @@ use args::Args;
 use cli::bag::RunBag;
 use cli::flags::check_distinct;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
-use cli::terminal::{print_lines, say};
+use cli::terminal::{be_quiet, print_lines, say};
 use files::{RunFolder, is_below};
+use logs::{Log, TopicChoice};
 use logs_in_order::Source;
 use owner::words::list;
 use std::io::stderr;
@@ -58,6 +59,17 @@ impl Job<'_> {
         list(&survey.logs().iter().map(|log| log.entry.name.clone()).collect::<Vec<_>>())
     }
 
+    /// What to try where no map can be made of the odometry: the poses of another SLAM, if all logs have them.
+    fn other_poses(&self) -> &'static str {
+        let given = &self.first.entry.choice;
+        let other = TopicChoice { is_corrected: true, ..given.clone() };
+        if !given.is_corrected && self.args.files.iter().all(|file| Log::open(file, &other).is_ok()) {
+            "; the poses of another SLAM are there: try --pose corrected"
+        } else {
+            ""
+        }
+    }
+
     /// Prints a line about the work to the error output.
     fn say(&self, line: std::fmt::Arguments) {
         if !self.args.quiet {
@@ -67,6 +79,9 @@ impl Job<'_> {
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
+    if args.quiet {
+        be_quiet();
+    }
     let begin = Instant::now();
     let (out, mcap, state) = (Some(args.out.as_path()), args.mcap.as_deref(), args.state.as_deref());
     let places = args.places.as_deref();
@@ -115,7 +130,8 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         state_file.finish(&survey);
     }
     if summary.is_refused {
-        say(stderr(), format_args!("error: the map is not usable: {}", summary.verdict_reasons.join("; ")));
+        let (reasons, other) = (summary.verdict_reasons.join("; "), job.other_poses());
+        say(stderr(), format_args!("error: the map is not usable: {reasons}{other}"));
     }
     if !args.quiet {
         let out = args.out.display();

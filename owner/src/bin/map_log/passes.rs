@@ -6,7 +6,7 @@ use anyhow::{Context, Error, anyhow};
 use cli::bag::RunBag;
 use cli::program::{Failure, input};
 use cli::progress::Progress;
-use cli::terminal::say;
+use cli::terminal::{note, say};
 use draw::scene::Scene;
 use draw::view::View;
 use mapper::{NoReturnDistrust, NoReturnEvidence};
@@ -46,8 +46,8 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, state: &mut SurveyStateFile
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
         drop(shown);
         let notes = survey.logs().get(log).map(|log| &log.entry.notes[source.entry.notes.len()..]);
-        for note in notes.iter().flat_map(|notes| notes.iter()) {
-            say(stderr(), format_args!("note: {}: {note}", source.entry.name));
+        for what in notes.iter().flat_map(|notes| notes.iter()) {
+            note(format_args!("{}: {what}", source.entry.name));
         }
         match found {
             Ok(()) if survey.verdict() == Verdict::NotUsable && !job.args.accept_map => {
@@ -66,7 +66,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, state: &mut SurveyStateFile
                 }
                 return Err(input(why));
             }
-            Err(other) => return Err(input(other)),
+            Err(other) => return Err(input(anyhow!("{other}{}", job.other_poses()))),
         }
     }
     Ok(true)

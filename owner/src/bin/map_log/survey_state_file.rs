@@ -1,7 +1,7 @@
 //! `--state`: what was learned from earlier logs, and what this run leaves for the next one.
 
 use cli::program::{Failure, open_state, state_failure};
-use cli::terminal::say;
+use cli::terminal::{note, say};
 use mapper::MapperSettings;
 use robot::state::{State, StateError, StateFile};
 use std::io::stderr;
@@ -29,8 +29,8 @@ impl SurveyStateFile {
         let of_state = |state| Ok(Loaded { logs: saved_logs(&state)?, state });
         let loaded = state.map(of_state).transpose().map_err(|why: StateError| state_failure(path, why))?;
         if loaded.as_ref().is_some_and(|loaded| loaded.state.check_build().is_err()) {
-            let note = "another build of this program has written it, whose results can differ in details";
-            say(stderr(), format_args!("note: {}: {note}", path.display()));
+            let what = "another build of this program has written it, whose results can differ in details";
+            note(format_args!("{}: {what}", path.display()));
         }
         Ok((Self { file: Some(file), is_written: true }, loaded))
     }
@@ -51,8 +51,8 @@ impl SurveyStateFile {
             return Ok(Survey::new(settings.clone(), learns_noise));
         };
         let restored = Survey::restored(settings.clone(), learns_noise, &state);
-        let (survey, note) = restored.map_err(|why| state_failure(file.path(), why))?;
-        note.iter().for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.path().display())));
+        let (survey, what) = restored.map_err(|why| state_failure(file.path(), why))?;
+        what.iter().for_each(|what| note(format_args!("{}: {what}", file.path().display())));
         Ok(survey)
     }
 
