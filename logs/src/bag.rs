@@ -20,10 +20,11 @@ pub(crate) use files::{BagFile, in_folder};
 
 use crate::bounds;
 use crate::bytes::content_hash;
-use crate::checks::Standing;
 use crate::checks::times::{self, Times};
-use crate::log::{self, Log, RawReadings as _, Source};
+use crate::checks::{Code, Codes, Repeats, Standing, without};
+use crate::log::{self, Log, RawReadings as _, Source, Unmeasured};
 use crate::summary::{LogError, LogSummary, TopicChoice, since_epoch};
+use interfaces::LaserReading;
 use inventory::Inventory;
 use message::Topic;
 use messages::Merged;
@@ -89,7 +90,7 @@ impl Bag {
             }
         }
         let has_pose_times = inspection.raw.has_pose_times();
-        let Inspection { raw, raw_s, standing, times } = inspection;
+        let Inspection { raw, raw_s, standing, times, unmeasured, repeated } = inspection;
         let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = odometry.stands() && standing.looks_so() && bag.plan.correction.is_none();
@@ -114,6 +115,7 @@ impl Bag {
             };
             return Err(unusable(in_cut_file(why, &missing)));
         }
+        notes.extend(repeated.into_iter().chain(unmeasured.codes.iter().map(Code::note)));
         notes.extend(times.note.clone());
         if let (Clock::Stamps(_), Some(duration_s)) = (bag.clock, times.times_s.last()) {
             let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
@@ -147,7 +149,7 @@ impl Bag {
         if stands {
             Arc::make_mut(&mut bag.plan).motion = MotionSource::Standing;
         }
-        Ok(Log::new(bag, times.times_s, summary))
+        Ok(Log::new(bag, times.times_s, unmeasured, summary))
     }
 
     fn raw(&self) -> RawReadings {
@@ -159,14 +161,21 @@ impl Bag {
     /// Reads all scans once.
     fn inspected(&self) -> Result<Inspection, LogError> {
         let (mut raw, mut raw_s, mut standing) = (self.raw(), Vec::new(), Standing::default());
+        let (mut repeats, mut codes) = (Repeats::default(), Codes::default());
         while let Some(reading) = raw.next_reading()? {
             let unusable = |why| LogError::Unusable { file: self.name.clone(), why };
             bounds::one_more(raw_s.len()).map_err(unusable)?;
             raw_s.push(reading.time_s);
-            standing.add(&reading.mount, &reading.scan);
+            let LaserReading { time_s, pose, mount, scan, .. } = &reading;
+            standing.add(mount, scan);
+            repeats.add(*time_s, pose, Some(*mount), scan);
+            codes.add(pose, Some(*mount), scan);
         }
+        let (left_out, repeated) = repeats.finish();
+        without(&mut raw_s, &left_out);
         let times = times::repaired(&raw_s);
-        Ok(Inspection { raw, raw_s, standing, times })
+        let unmeasured = Unmeasured { left_out, codes: codes.finish() };
+        Ok(Inspection { raw, raw_s, standing, times, unmeasured, repeated })
     }
 }
 
@@ -189,6 +198,9 @@ struct Inspection {
     raw_s: Vec<f64>,
     standing: Standing,
     times: Times,
+    unmeasured: Unmeasured,
+    /// Notes on what is left out.
+    repeated: Vec<String>,
 }
 
 impl Inspection {

@@ -1,5 +1,6 @@
 //! A log of any format.
 
+use crate::checks::{Code, without};
 use crate::summary::{LogError, LogSummary};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
@@ -16,6 +17,16 @@ pub struct Log {
     summary: LogSummary,
     /// The times of the readings, repaired, s.
     times_s: Arc<[f64]>,
+    unmeasured: Arc<Unmeasured>,
+}
+
+/// What a log contains that is no measurement, as its inspection found.
+#[derive(Debug, Default)]
+pub(crate) struct Unmeasured {
+    /// The numbers of the readings that repeat another one, in order.
+    pub(crate) left_out: Vec<usize>,
+    /// Ranges that mean no return.
+    pub(crate) codes: Vec<Code>,
 }
 
 /// Readings with their times as written.
@@ -37,8 +48,14 @@ pub(crate) trait Source: Debug + Send + Sync {
 }
 
 impl Log {
-    pub(crate) fn new(source: impl Source + 'static, times_s: Vec<f64>, summary: LogSummary) -> Self {
-        Self { source: Arc::new(source), summary, times_s: times_s.into() }
+    /// `times_s` are those of the readings that are not left out.
+    pub(crate) fn new(
+        source: impl Source + 'static,
+        times_s: Vec<f64>,
+        unmeasured: Unmeasured,
+        summary: LogSummary,
+    ) -> Self {
+        Self { source: Arc::new(source), summary, times_s: times_s.into(), unmeasured: unmeasured.into() }
     }
 
     /// What the log contains, and what was repaired.
@@ -53,7 +70,7 @@ impl Log {
     ///
     /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        Readings::new(self.source.raw_readings()?, self.times_s.clone())
+        Readings::new(self.source.raw_readings()?, self.times_s.clone(), self.unmeasured.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -72,7 +89,9 @@ impl Log {
     ///
     /// As for [`Log::open`].
     pub fn reference_poses(&self) -> Result<Option<Vec<Option<Isometry2<f64>>>>, LogError> {
-        self.source.reference_poses()
+        let mut poses = self.source.reference_poses()?;
+        poses.iter_mut().for_each(|poses| without(poses, &self.unmeasured.left_out));
+        Ok(poses)
     }
 }
 
@@ -92,11 +111,23 @@ pub struct Readings {
 }
 
 impl Readings {
-    fn new(mut raw: Box<dyn RawReadings + Send>, times_s: Arc<[f64]>) -> Result<Self, LogError> {
+    fn new(
+        mut raw: Box<dyn RawReadings + Send>,
+        times_s: Arc<[f64]>,
+        unmeasured: Arc<Unmeasured>,
+    ) -> Result<Self, LogError> {
         let (to, waiting) = sync_channel(AHEAD);
         // Ends with the last reading, and when nobody waits for the next one.
         let read = move || {
-            while let Some(next) = raw.next_reading().transpose() {
+            for number in 0.. {
+                let Some(mut next) = raw.next_reading().transpose() else { break };
+                if next.is_ok() && unmeasured.left_out.binary_search(&number).is_ok() {
+                    continue;
+                }
+                if let Ok(reading) = &mut next {
+                    let LaserReading { mount, scan, .. } = reading;
+                    unmeasured.codes.iter().for_each(|code| code.remove(mount, &mut scan.ranges_m));
+                }
                 let has_failed = next.is_err();
                 if to.send(next).is_err() || has_failed {
                     break;
@@ -152,7 +183,8 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into()).unwrap();
+        let mut readings =
+            Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into(), Arc::default()).unwrap();
         let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
         assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");
