@@ -9,7 +9,9 @@ use std::ops::Bound::{Excluded, Unbounded};
 /// of a real laser come up to 41 times as often, but then only 205 times, and codes 1712 times.
 const MIN_COUNT: u32 = 1000;
 const MIN_RATIO: u32 = 20;
-/// It comes in at least this many of 32 sectors of the field of view: the robot itself is seen in some directions only.
+/// A laser measures at least this many different ranges: of fewer, as of a drawing, each can be a surface.
+const MIN_VALUES: usize = 100;
+/// It comes without a surface beside it in at least this many of 32 sectors of the field of view: the robot itself is seen in some directions only.
 const MIN_SECTORS: u32 = 8;
 /// It comes from poses that are this far apart, m.
 const APART_M: f64 = 1.0;
@@ -27,6 +29,7 @@ const MAX_LASERS: usize = 8;
 #[derive(Debug, Default)]
 struct Value {
     count: u32,
+    /// The sectors in which a range beside it is not near it.
     sectors: u32,
     first: Point2<f64>,
     is_apart: bool,
@@ -97,7 +100,6 @@ impl Codes {
             let new = || Value { first: at, ..Value::default() };
             let value = values.entry(range_m.to_bits()).or_insert_with(new);
             value.count = value.count.saturating_add(1);
-            value.sectors |= 1 << (32 * beam / ranges_m.len());
             value.is_apart |= (at - value.first).norm() >= APART_M;
             let beside = [beam.checked_sub(1), Some(beam + 1)].into_iter().flatten();
             for other_m in beside.filter_map(|beside| ranges_m.get(beside)).filter(|other| **other != range_m)
@@ -105,6 +107,7 @@ impl Codes {
                 let is_near = (other_m - range_m).abs() < NEAR_SHARE * range_m;
                 let count = if is_near { &mut value.near } else { &mut value.far };
                 *count = count.saturating_add(1);
+                value.sectors |= u32::from(!is_near) << (32 * beam / ranges_m.len());
             }
         }
     }
@@ -117,7 +120,8 @@ impl Codes {
             let is_code = |(bits, value): &(&u32, &Value)| {
                 let below = count(values.range(..*bits).next_back());
                 let above = count(values.range((Excluded(*bits), Unbounded)).next());
-                value.count >= MIN_COUNT
+                values.len() >= MIN_VALUES
+                    && value.count >= MIN_COUNT
                     && value.count / MIN_RATIO >= below.max(above)
                     && value.sectors.count_ones() >= MIN_SECTORS
                     && value.is_apart
@@ -133,5 +137,74 @@ impl Codes {
                 .collect()
         };
         self.0.iter().flat_map(|laser| -> Vec<Code> { of_laser(laser) }).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BEAMS: usize = 90;
+
+    /// What a robot sees that drives 4 m through a room of 6 m while it turns, and stands from half of the way on for as long again. Ranges
+    /// are multiples of `step_m` (0: exact), after noise up to `noise_m`; through an opening, nothing comes back.
+    fn codes_of(step_m: f64, noise_m: f64, no_return: f32, moves: bool) -> Vec<(f32, u32)> {
+        let mut codes = Codes::default();
+        let mut random = 1_u64;
+        for number in 0..1600_u32 {
+            let driven = f64::from(if moves { number.min(800) + number.saturating_sub(1200) } else { 0 });
+            let pose = interfaces::pose(driven / 300.0 - 2.0, 0.5, driven * 0.05);
+            let range_m = |beam: usize| {
+                let angle_rad = driven * 0.05 + beam as f64 * 0.07;
+                let (sin, cos) = angle_rad.sin_cos();
+                let (at, to) =
+                    (pose.translation.vector, |at: f64, along: f64| (3.0_f64.copysign(along) - at) / along);
+                random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                let noise_m = noise_m * (random >> 33) as f64 / (1_u64 << 31) as f64;
+                let exact_m = to(at.x, cos).min(to(at.y, sin)) + noise_m;
+                let measured_m = if step_m > 0.0 { (exact_m / step_m).round() * step_m } else { exact_m };
+                if interfaces::wrap_rad(angle_rad).abs() < 0.2 { no_return } else { measured_m as f32 }
+            };
+            let mut ranges_m: Vec<f32> = (0..BEAMS).map(range_m).collect();
+            // Posts of the robot itself.
+            [3, 30, 33, 60].into_iter().for_each(|beam| ranges_m[beam] = 0.25);
+            codes.add(&pose, None, &Scan { ranges_m, ..Scan::default() });
+        }
+        codes.finish().iter().map(|code| (code.range_m, code.count)).collect()
+    }
+
+    #[test]
+    fn one_number_in_all_directions_without_a_surface_beside_it_is_a_code() {
+        for code in [65.535, 5.999, 2.85] {
+            // Millimeters, and so many different ranges that the rare ones are forgotten.
+            for step_m in [0.001, 0.0] {
+                let found = codes_of(step_m, 0.03, code, true);
+                assert!(
+                    matches!(found[..], [(range_m, 4000..)] if range_m == code),
+                    "{step_m} {code}: {found:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_that_are_measured_are_no_codes() {
+        for (step_m, noise_m) in [(0.0, 0.0), (0.001, 0.0), (0.01, 0.0), (0.01, 0.03), (0.05, 0.02)] {
+            assert_eq!(codes_of(step_m, noise_m, f32::INFINITY, true), [], "{step_m} {noise_m}");
+            // Of a robot that stands, every range can be measured.
+            assert_eq!(codes_of(step_m, noise_m, 5.999, false), [], "{step_m} {noise_m}");
+        }
+    }
+
+    #[test]
+    fn a_code_becomes_no_return_for_its_laser_only() {
+        let mounts = [0.1, 0.2].map(|x| interfaces::pose(x, 0.0, 0.0));
+        let code = Code { mount: Some(mounts[0]), range_m: 2.85, count: 1000 };
+        let removed = |mount| {
+            let mut ranges_m = [2.85, 2.851];
+            code.remove(mount, &mut ranges_m);
+            ranges_m
+        };
+        assert_eq!([removed(&mounts[0]), removed(&mounts[1])], [[f32::INFINITY, 2.851], [2.85, 2.851]]);
     }
 }

@@ -21,6 +21,8 @@ struct Run {
     has_time: bool,
     /// The time of the last one, s.
     last_s: f64,
+    /// The numbers of the scans with the time of the one before, of which it is not known whether times go forward.
+    same_time: Vec<usize>,
     /// The numbers of the scans that are equal though the robot moved.
     moved: Vec<usize>,
 }
@@ -48,21 +50,25 @@ impl Repeats {
         self.scans += 1;
         let Some(run) = self.runs.iter_mut().find(|run| run.mount == mount) else {
             if self.runs.len() < MAX_LASERS {
-                let (ranges_m, pose) = (ranges_m.clone(), *pose);
-                let moved = Vec::new();
-                self.runs.push(Run { mount, ranges_m, time_s, pose, has_time: true, last_s: time_s, moved });
+                let ranges_m = ranges_m.clone();
+                let (pose, last_s, [same_time, moved]) = (*pose, time_s, [Vec::new(), Vec::new()]);
+                let run = Run { mount, ranges_m, time_s, pose, has_time: false, last_s, same_time, moved };
+                self.runs.push(run);
             }
             return;
         };
         let bits = |ranges_m: &[f32]| ranges_m.iter().map(|range_m| range_m.to_bits()).collect::<Vec<_>>();
         if ranges_m.len() != run.ranges_m.len() || bits(ranges_m) != bits(&run.ranges_m) {
             let is_short = time_s > run.time_s && time_s - run.time_s <= LONGEST_S;
+            let same_time = run.same_time.drain(..).filter(|_| time_s > run.last_s);
+            self.same_time.extend(same_time);
             self.new_time.extend(run.moved.drain(..).filter(|_| is_short));
             run.has_time = time_s > run.last_s;
             run.ranges_m.clone_from(ranges_m);
             (run.time_s, run.pose) = (time_s, *pose);
-        } else if time_s == run.last_s && run.has_time {
-            self.same_time.push(number);
+        } else if time_s == run.last_s {
+            let same_time = if run.has_time { &mut self.same_time } else { &mut run.same_time };
+            same_time.push(number);
         } else if !MOTION.contains(&run.pose.inv_mul(pose)) && ranges_m.iter().any(|it| it.is_finite()) {
             run.moved.push(number);
         }
