@@ -21,10 +21,9 @@ pub(crate) use files::{BagFile, in_folder};
 use crate::bounds;
 use crate::bytes::content_hash;
 use crate::checks::times::{self, Times};
-use crate::checks::{Code, Codes, Repeats, Standing, without};
-use crate::log::{self, Log, RawReadings as _, Source, Unmeasured};
+use crate::checks::{Looks, Standing};
+use crate::log::{self, Log, RawReadings as _, Source};
 use crate::summary::{LogError, LogSummary, TopicChoice, since_epoch};
-use interfaces::LaserReading;
 use inventory::Inventory;
 use message::Topic;
 use messages::Merged;
@@ -90,7 +89,7 @@ impl Bag {
             }
         }
         let has_pose_times = inspection.raw.has_pose_times();
-        let Inspection { raw, raw_s, standing, times, unmeasured, repeated } = inspection;
+        let Inspection { raw, raw_s, standing, looks, times } = inspection;
         let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = odometry.stands() && standing.looks_so() && bag.plan.correction.is_none();
@@ -115,8 +114,7 @@ impl Bag {
             };
             return Err(unusable(in_cut_file(why, &missing)));
         }
-        notes.extend(repeated.into_iter().chain(unmeasured.codes.iter().map(Code::note)));
-        notes.extend(times.note.clone());
+        notes.extend(looks.notes.iter().cloned().chain(times.note.clone()));
         if let (Clock::Stamps(_), Some(duration_s)) = (bag.clock, times.times_s.last()) {
             let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
             notes.extend(times::other_pace(*duration_s, recorded_s));
@@ -149,7 +147,7 @@ impl Bag {
         if stands {
             Arc::make_mut(&mut bag.plan).motion = MotionSource::Standing;
         }
-        Ok(Log::new(bag, times.times_s, unmeasured, summary))
+        Ok(Log::new(bag, (times.times_s, looks), summary))
     }
 
     fn raw(&self) -> RawReadings {
@@ -161,21 +159,18 @@ impl Bag {
     /// Reads all scans once.
     fn inspected(&self) -> Result<Inspection, LogError> {
         let (mut raw, mut raw_s, mut standing) = (self.raw(), Vec::new(), Standing::default());
-        let (mut repeats, mut codes) = (Repeats::default(), Codes::default());
+        let mut looks = Looks::default();
         while let Some(reading) = raw.next_reading()? {
             let unusable = |why| LogError::Unusable { file: self.name.clone(), why };
             bounds::one_more(raw_s.len()).map_err(unusable)?;
             raw_s.push(reading.time_s);
-            let LaserReading { time_s, pose, mount, scan, .. } = &reading;
-            standing.add(mount, scan);
-            repeats.add(*time_s, pose, Some(*mount), scan);
-            codes.add(pose, Some(*mount), scan);
+            standing.add(&reading.mount, &reading.scan);
+            looks.add(reading.time_s, &reading.pose, &reading.scan.ranges_m);
         }
-        let (left_out, repeated) = repeats.finish();
-        without(&mut raw_s, &left_out);
+        looks.finish();
+        let raw_s = looks.of_looks(raw_s);
         let times = times::repaired(&raw_s);
-        let unmeasured = Unmeasured { left_out, codes: codes.finish() };
-        Ok(Inspection { raw, raw_s, standing, times, unmeasured, repeated })
+        Ok(Inspection { raw, raw_s, standing, looks, times })
     }
 }
 
@@ -197,10 +192,8 @@ struct Inspection {
     /// The times of the scans, s, and how the scans look.
     raw_s: Vec<f64>,
     standing: Standing,
+    looks: Looks,
     times: Times,
-    unmeasured: Unmeasured,
-    /// Notes on what is left out.
-    repeated: Vec<String>,
 }
 
 impl Inspection {

@@ -5,15 +5,14 @@ mod codes;
 mod doubts;
 mod holes;
 mod jumps;
+mod looks;
 mod pace;
-mod repeats;
 mod standing;
 pub(crate) mod times;
 
-pub(crate) use codes::{Code, Codes};
 pub(crate) use doubts::{Doubts, OdometryTimes, typical};
 pub(crate) use holes::{Holes, LONGEST_GAP_S};
 pub(crate) use jumps::{Jumps, Speeds};
+pub(crate) use looks::{Looks, TimedLooks};
 pub(crate) use pace::Pace;
-pub(crate) use repeats::{Repeats, without};
 pub(crate) use standing::{MIN_MOTION_M, MIN_MOTION_RAD, Standing};

@@ -6,8 +6,7 @@ use super::{Lines, Rules};
 use crate::assemble::Odometry;
 use crate::bounds;
 use crate::checks::times::{self, Times};
-use crate::checks::{Code, Codes, Doubts, OdometryTimes, Repeats, Speeds, Standing, without};
-use crate::log::Unmeasured;
+use crate::checks::{Doubts, Looks, OdometryTimes, Speeds, Standing, TimedLooks};
 use crate::summary::{LogError, LogSummary, since_epoch};
 use nalgebra::Isometry2;
 use std::collections::BTreeSet;
@@ -17,12 +16,9 @@ const MIN_BEYOND: usize = 20;
 /// A pose that the odometry measures right after a scan is at most this far from it in time, s.
 const SAME_TIME_S: f64 = 1.0;
 
-/// How lines become readings, the times of the readings, s, and what the log contains.
-type Inspected = (Rules, Vec<f64>, Unmeasured, LogSummary);
-
 /// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
 /// what the log contains.
-pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<Inspected, LogError> {
+pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<(Rules, TimedLooks, LogSummary), LogError> {
     let mut inspection = Inspection::default();
     while let Some(line) = line::next(lines, &inspection.geometry)? {
         inspection.add(line, lines)?;
@@ -41,7 +37,7 @@ pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<Inspected, Log
         };
         return Err(LogError::Unusable { file: lines.file.clone(), why });
     }
-    let (rules, times_s, unmeasured, mut summary) = inspection.summarized(is_corrected);
+    let (rules, looks, mut summary) = inspection.summarized(is_corrected);
     if let Some((packed, unpacked)) = lines.cut() {
         let note = format!(
             "the gzip file is cut off after {packed} bytes, and the rest is missing: {} lines ({unpacked} bytes of text) could be \
@@ -50,7 +46,7 @@ pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<Inspected, Log
         );
         summary.notes.insert(0, note);
     }
-    Ok((rules, times_s, unmeasured, summary))
+    Ok((rules, looks, summary))
 }
 
 /// Lines that are left out: their number, and the first one.
@@ -101,8 +97,7 @@ struct Inspection {
     speeds: Speeds,
     doubts: Doubts,
     odometry_times: OdometryTimes,
-    repeats: Repeats,
-    codes: Codes,
+    looks: Looks,
     notes: Vec<String>,
 }
 
@@ -130,10 +125,7 @@ impl Inspection {
                 self.recorded_s.extend(scan.recorded_s);
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
-                let odometry = if self.with_time > 0 { &self.timed } else { &self.untimed };
-                let pose = odometry.newest().0;
-                self.repeats.add(scan.time_s, &pose, None, &scan.scan);
-                self.codes.add(&pose, None, &scan.scan);
+                self.looks.add(scan.time_s, &self.timed.newest().0, &scan.scan.ranges_m);
             }
             Line::Param { name, value } => self.geometry.set(&name, value),
             Line::Invalid { is_scan, what } => {
@@ -191,10 +183,10 @@ impl Inspection {
         }
     }
 
-    fn summarized(mut self, takes_scan_poses: bool) -> Inspected {
-        let (left_out, repeated) = self.repeats.finish();
-        [&mut self.times_s, &mut self.recorded_s].into_iter().for_each(|times_s| without(times_s, &left_out));
-        let unmeasured = Unmeasured { left_out, codes: self.codes.finish() };
+    fn summarized(mut self, takes_scan_poses: bool) -> (Rules, TimedLooks, LogSummary) {
+        self.looks.finish();
+        self.times_s = self.looks.of_looks(self.times_s);
+        self.recorded_s = self.looks.of_looks(self.recorded_s);
         let Self { mut geometry, mut notes, .. } = self;
         notes.extend(self.invalid_scans.note("scan", "scans"));
         notes.extend(self.invalid_poses.note("ODOM line", "ODOM lines"));
@@ -239,8 +231,7 @@ impl Inspection {
             let begin_s = self.times_s.first().copied().unwrap_or_default();
             notes.extend(odometry.holes.note().into_iter().chain(odometry.restarts_note(begin_s)));
         }
-        notes.extend(repeated.into_iter().chain(unmeasured.codes.iter().map(Code::note)));
-        notes.extend(times.note.clone());
+        notes.extend(self.looks.notes.iter().cloned().chain(times.note.clone()));
         notes.extend(begin_s.and(times.date_note()));
         let Times { times_s, has_times, .. } = times;
         notes.extend(recorded_pace(&self.recorded_s, has_times, &times_s));
@@ -260,7 +251,7 @@ impl Inspection {
             impossible,
         };
         let rules = Rules { geometry, has_times, has_origins, is_corrected, stands, takes_scan_poses: false };
-        (rules, times_s, unmeasured, summary)
+        (rules, (times_s, self.looks), summary)
     }
 }
 

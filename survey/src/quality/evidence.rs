@@ -20,7 +20,7 @@ const MIN_SURFACE_M: f64 = 1.2;
 const ONE_SURFACE_M: f64 = 0.5;
 const ONE_SURFACE: f64 = 0.1;
 /// The number of scans before and after one that see the same on the same pass.
-pub(super) const SAME_PASS: usize = 15;
+const SAME_PASS: usize = 15;
 
 /// A hash of the two numbers of a cell, by multiplication (Knuth 1998, section 6.4). They come from the scans of one log, and are looked up
 /// at every step of every beam: a hash that withstands chosen keys took most of the time.

@@ -208,9 +208,7 @@ struct CountedScan {
 impl QualityCheck {
     /// Adds the next reading; `pose` is what is known of its pose so far.
     pub(crate) fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
-        if reading.hits().next().is_none() {
-            self.blind.push(self.readings);
-        }
+        self.blind.extend(reading.hits().next().is_none().then_some(self.readings));
         self.readings += 1;
         if self.last.is_some_and(|last| COUNTED.contains(&last.inv_mul(pose))) {
             return;
@@ -227,12 +225,11 @@ impl QualityCheck {
 
     /// The figures, along the trajectory that was found, and the readings whose poses are in doubt.
     pub(crate) fn finish(self, poses: &[TrajectoryPose]) -> (Quality, Vec<Range<usize>>) {
-        let uncertain = poses.iter().filter(|at| at.state != PoseState::Tracking).count();
-        let share_left_out = |bridged: usize| (uncertain - bridged) as f64 / poses.len().max(1) as f64;
+        let left_out = poses.iter().filter(|at| at.state != PoseState::Tracking).count();
+        let left_out = left_out as f64 / poses.len().max(1) as f64;
         let certain = |scan: &CountedScan| poses[scan.reading].state == PoseState::Tracking;
         let counted: Vec<CountedScan> = self.counted.into_iter().filter(certain).collect();
         if counted.len() < MIN_SCANS {
-            let left_out = share_left_out(0);
             return (Quality { scans: counted.len(), left_out, ..Quality::default() }, Vec::new());
         }
         let placed = |scan: &CountedScan| PlacedScan::new(&poses[scan.reading].pose, &scan.laser, &scan.hits);
@@ -252,7 +249,7 @@ impl QualityCheck {
             contradicting: share(|scan| scan.in_free > CONTRADICTING),
             worst_stretch: judged.windows(STRETCH).map(mean).fold(0.0, f64::max),
             weak_links: weak.iter().filter(|is_weak| **is_weak).count(),
-            left_out: share_left_out(bridged(&self.blind, &numbers, &placed, poses)),
+            left_out: left_out - bridged(&self.blind, &numbers, &placed, poses),
             seen_once: judged.iter().map(|scan| scan.seen_once).sum::<f64>() / judged.len() as f64,
             scale: scale(&counted, poses),
             doubts,
