@@ -20,8 +20,8 @@ pub(crate) use files::{BagFile, in_folder};
 
 use crate::bounds;
 use crate::bytes::content_hash;
-use crate::checks::Standing;
 use crate::checks::times::{self, Times};
+use crate::checks::{Looks, Standing};
 use crate::log::{self, Log, RawReadings as _, Source};
 use crate::summary::{LogError, LogSummary, TopicChoice, since_epoch};
 use inventory::Inventory;
@@ -89,7 +89,7 @@ impl Bag {
             }
         }
         let has_pose_times = inspection.raw.has_pose_times();
-        let Inspection { raw, raw_s, standing, times } = inspection;
+        let Inspection { raw, raw_s, standing, looks, times } = inspection;
         let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = odometry.stands() && standing.looks_so() && bag.plan.correction.is_none();
@@ -114,7 +114,7 @@ impl Bag {
             };
             return Err(unusable(in_cut_file(why, &missing)));
         }
-        notes.extend(times.note.clone());
+        notes.extend(looks.notes.iter().cloned().chain(times.note.clone()));
         if let (Clock::Stamps(_), Some(duration_s)) = (bag.clock, times.times_s.last()) {
             let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
             notes.extend(times::other_pace(*duration_s, recorded_s));
@@ -147,7 +147,7 @@ impl Bag {
         if stands {
             Arc::make_mut(&mut bag.plan).motion = MotionSource::Standing;
         }
-        Ok(Log::new(bag, times.times_s, summary))
+        Ok(Log::new(bag, (times.times_s, looks), summary))
     }
 
     fn raw(&self) -> RawReadings {
@@ -159,14 +159,18 @@ impl Bag {
     /// Reads all scans once.
     fn inspected(&self) -> Result<Inspection, LogError> {
         let (mut raw, mut raw_s, mut standing) = (self.raw(), Vec::new(), Standing::default());
+        let mut looks = Looks::default();
         while let Some(reading) = raw.next_reading()? {
             let unusable = |why| LogError::Unusable { file: self.name.clone(), why };
             bounds::one_more(raw_s.len()).map_err(unusable)?;
             raw_s.push(reading.time_s);
             standing.add(&reading.mount, &reading.scan);
+            looks.add(reading.time_s, &reading.pose, &reading.scan.ranges_m);
         }
+        looks.finish();
+        let raw_s = looks.of_looks(raw_s);
         let times = times::repaired(&raw_s);
-        Ok(Inspection { raw, raw_s, standing, times })
+        Ok(Inspection { raw, raw_s, standing, looks, times })
     }
 }
 
@@ -188,6 +192,7 @@ struct Inspection {
     /// The times of the scans, s, and how the scans look.
     raw_s: Vec<f64>,
     standing: Standing,
+    looks: Looks,
     times: Times,
 }
 

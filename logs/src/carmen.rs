@@ -76,13 +76,13 @@ impl CarmenLog {
     /// When the file cannot be read, when most scans or most poses are invalid, when no line is a scan, or when `choice` demands corrected poses and
     /// the log has none. A last line that is cut off is left out, see [`LogSummary::notes`](crate::LogSummary::notes).
     pub(crate) fn open(file: &str, bytes: Bytes, choice: &TopicChoice) -> Result<Log, LogError> {
-        let (rules, times_s, summary) = inspection::of(&mut Lines::open(&bytes, file)?, choice.is_corrected)?;
+        let (rules, looks, summary) = inspection::of(&mut Lines::open(&bytes, file)?, choice.is_corrected)?;
         let mut log = Self { bytes, file: file.to_owned(), rules };
         if choice.is_corrected {
             log.check_corrected(&summary)?;
             log.rules.takes_scan_poses = true;
         }
-        Ok(Log::new(log, times_s, summary))
+        Ok(Log::new(log, looks, summary))
     }
 
     /// Checks that the log has corrected poses.

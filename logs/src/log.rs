@@ -1,5 +1,6 @@
 //! A log of any format.
 
+use crate::checks::TimedLooks;
 use crate::summary::{LogError, LogSummary};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
@@ -14,8 +15,8 @@ use std::thread::{Builder, JoinHandle};
 pub struct Log {
     source: Arc<dyn Source>,
     summary: LogSummary,
-    /// The times of the readings, repaired, s.
-    times_s: Arc<[f64]>,
+    /// With the times of the readings, repaired, s.
+    looks: Arc<TimedLooks>,
 }
 
 /// Readings with their times as written.
@@ -37,8 +38,8 @@ pub(crate) trait Source: Debug + Send + Sync {
 }
 
 impl Log {
-    pub(crate) fn new(source: impl Source + 'static, times_s: Vec<f64>, summary: LogSummary) -> Self {
-        Self { source: Arc::new(source), summary, times_s: times_s.into() }
+    pub(crate) fn new(source: impl Source + 'static, looks: TimedLooks, summary: LogSummary) -> Self {
+        Self { source: Arc::new(source), summary, looks: looks.into() }
     }
 
     /// What the log contains, and what was repaired.
@@ -53,7 +54,7 @@ impl Log {
     ///
     /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        Readings::new(self.source.raw_readings()?, self.times_s.clone())
+        Readings::new(self.source.raw_readings()?, self.looks.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -72,7 +73,7 @@ impl Log {
     ///
     /// As for [`Log::open`].
     pub fn reference_poses(&self) -> Result<Option<Vec<Option<Isometry2<f64>>>>, LogError> {
-        self.source.reference_poses()
+        Ok(self.source.reference_poses()?.map(|poses| self.looks.1.of_looks(poses)))
     }
 }
 
@@ -87,16 +88,18 @@ pub struct Readings {
     waiting: Receiver<Next>,
     /// `None` after the last reading.
     thread: Option<JoinHandle<()>>,
-    times_s: Arc<[f64]>,
+    timed: Arc<TimedLooks>,
     given: usize,
 }
 
 impl Readings {
-    fn new(mut raw: Box<dyn RawReadings + Send>, times_s: Arc<[f64]>) -> Result<Self, LogError> {
+    fn new(mut raw: Box<dyn RawReadings + Send>, looks: Arc<TimedLooks>) -> Result<Self, LogError> {
         let (to, waiting) = sync_channel(AHEAD);
+        let timed = looks.clone();
         // Ends with the last reading, and when nobody waits for the next one.
         let read = move || {
-            while let Some(next) = raw.next_reading().transpose() {
+            let all = (0..).map_while(|number| Some((number, raw.next_reading().transpose()?)));
+            for (_, next) in all.filter(|(number, next)| next.is_err() || looks.1.is_look(*number)) {
                 let has_failed = next.is_err();
                 if to.send(next).is_err() || has_failed {
                     break;
@@ -105,7 +108,7 @@ impl Readings {
         };
         let failed = |why| LogError::Io { file: "the thread that reads a log".to_owned(), why };
         let thread = Some(Builder::new().name("log".to_owned()).spawn(read).map_err(failed)?);
-        Ok(Self { waiting, thread, times_s, given: 0 })
+        Ok(Self { waiting, thread, timed, given: 0 })
     }
 }
 
@@ -124,7 +127,8 @@ impl Iterator for Readings {
             failed => return Some(failed),
         };
         // The file can have grown since the inspection.
-        let time_s = *self.times_s.get(self.given)?;
+        let time_s = *self.timed.0.get(self.given)?;
+        self.timed.1.clean(&mut reading.scan.ranges_m);
         self.given += 1;
         let shift_s = time_s - reading.time_s;
         reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
@@ -136,6 +140,7 @@ impl Iterator for Readings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::checks::Looks;
 
     /// Readings at these times, then an error.
     struct Some3(u8);
@@ -152,7 +157,8 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into()).unwrap();
+        let mut readings =
+            Readings::new(Box::new(Some3(0)), (vec![1.0, 2.0, 3.0, 4.0], Looks::default()).into()).unwrap();
         let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
         assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");

@@ -90,7 +90,7 @@ pub(crate) fn drive(seed: u64, seconds: f64) -> (Vec<LaserReading>, Vec<Isometry
     (readings, poses)
 }
 
-fn first_pass(settings: &SurveySettings, readings: &[LaserReading]) -> Route {
+pub(crate) fn first_pass(settings: &SurveySettings, readings: &[LaserReading]) -> Route {
     let mut pass = FirstPass::new(settings).unwrap();
     readings.iter().for_each(|reading| pass.add(reading.clone()));
     pass.finish()

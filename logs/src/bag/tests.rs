@@ -6,4 +6,5 @@ mod faults;
 mod fuzz;
 mod order;
 mod reading;
+mod repeats;
 mod times;

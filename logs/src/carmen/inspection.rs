@@ -6,7 +6,7 @@ use super::{Lines, Rules};
 use crate::assemble::Odometry;
 use crate::bounds;
 use crate::checks::times::{self, Times};
-use crate::checks::{Doubts, OdometryTimes, Speeds, Standing};
+use crate::checks::{Doubts, Looks, OdometryTimes, Speeds, Standing, TimedLooks};
 use crate::summary::{LogError, LogSummary, since_epoch};
 use nalgebra::Isometry2;
 use std::collections::BTreeSet;
@@ -18,7 +18,7 @@ const SAME_TIME_S: f64 = 1.0;
 
 /// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
 /// what the log contains.
-pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
+pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<(Rules, TimedLooks, LogSummary), LogError> {
     let mut inspection = Inspection::default();
     while let Some(line) = line::next(lines, &inspection.geometry)? {
         inspection.add(line, lines)?;
@@ -37,7 +37,7 @@ pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<(Rules, Vec<f6
         };
         return Err(LogError::Unusable { file: lines.file.clone(), why });
     }
-    let (rules, times_s, mut summary) = inspection.summarized(is_corrected);
+    let (rules, looks, mut summary) = inspection.summarized(is_corrected);
     if let Some((packed, unpacked)) = lines.cut() {
         let note = format!(
             "the gzip file is cut off after {packed} bytes, and the rest is missing: {} lines ({unpacked} bytes of text) could be \
@@ -46,7 +46,7 @@ pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<(Rules, Vec<f6
         );
         summary.notes.insert(0, note);
     }
-    Ok((rules, times_s, summary))
+    Ok((rules, looks, summary))
 }
 
 /// Lines that are left out: their number, and the first one.
@@ -97,6 +97,7 @@ struct Inspection {
     speeds: Speeds,
     doubts: Doubts,
     odometry_times: OdometryTimes,
+    looks: Looks,
     notes: Vec<String>,
 }
 
@@ -124,6 +125,7 @@ impl Inspection {
                 self.recorded_s.extend(scan.recorded_s);
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
+                self.looks.add(scan.time_s, &self.timed.newest().0, &scan.scan.ranges_m);
             }
             Line::Param { name, value } => self.geometry.set(&name, value),
             Line::Invalid { is_scan, what } => {
@@ -181,7 +183,10 @@ impl Inspection {
         }
     }
 
-    fn summarized(self, takes_scan_poses: bool) -> (Rules, Vec<f64>, LogSummary) {
+    fn summarized(mut self, takes_scan_poses: bool) -> (Rules, TimedLooks, LogSummary) {
+        self.looks.finish();
+        self.times_s = self.looks.of_looks(self.times_s);
+        self.recorded_s = self.looks.of_looks(self.recorded_s);
         let Self { mut geometry, mut notes, .. } = self;
         notes.extend(self.invalid_scans.note("scan", "scans"));
         notes.extend(self.invalid_poses.note("ODOM line", "ODOM lines"));
@@ -226,7 +231,7 @@ impl Inspection {
             let begin_s = self.times_s.first().copied().unwrap_or_default();
             notes.extend(odometry.holes.note().into_iter().chain(odometry.restarts_note(begin_s)));
         }
-        notes.extend(times.note.clone());
+        notes.extend(self.looks.notes.iter().cloned().chain(times.note.clone()));
         notes.extend(begin_s.and(times.date_note()));
         let Times { times_s, has_times, .. } = times;
         notes.extend(recorded_pace(&self.recorded_s, has_times, &times_s));
@@ -246,7 +251,7 @@ impl Inspection {
             impossible,
         };
         let rules = Rules { geometry, has_times, has_origins, is_corrected, stands, takes_scan_poses: false };
-        (rules, times_s, summary)
+        (rules, (times_s, self.looks), summary)
     }
 }
 

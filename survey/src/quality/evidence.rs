@@ -135,6 +135,13 @@ impl Evidence {
         judged
     }
 
+    /// The shares of the hits of scans that are near hits of other scans.
+    pub(super) fn links(others: &[PlacedScan], scans: &[PlacedScan]) -> Vec<f64> {
+        let mut evidence = Self::default();
+        others.iter().for_each(|scan| evidence.neighbor(scan, |seen| seen.before += 1));
+        scans.iter().map(|scan| evidence.linked(scan)).collect()
+    }
+
     fn hit(&mut self, number: u32, scan: &PlacedScan) {
         for cell in scan.cells() {
             let seen = self.0.entry(cell).or_default();
@@ -172,9 +179,16 @@ impl Evidence {
         scan.distinct_cells().into_iter().for_each(|cell| count(self.0.entry(cell).or_default()));
     }
 
+    /// The share of the hits of a scan that are near hits of the scans before it.
+    fn linked(&self, scan: &PlacedScan) -> f64 {
+        let is_before = |cell: &Cell| self.0.get(cell).is_some_and(|seen| seen.before > 0);
+        let linked = scan.cells().filter(|cell| cell.square(1).any(|cell| is_before(&cell))).count();
+        linked as f64 / scan.hits.len().max(1) as f64
+    }
+
     fn judged(&self, scan: &PlacedScan, is_first: bool) -> Judged {
         let own = scan.distinct_cells();
-        let [mut linked, mut seen_once] = [0_u32; 2];
+        let mut seen_once = 0;
         let mut is_in_free = Vec::with_capacity(scan.hits.len());
         for cell in scan.cells() {
             let around = || cell.square(1).filter_map(|cell| self.0.get(&cell).map(|seen| (cell, *seen)));
@@ -182,14 +196,13 @@ impl Evidence {
                 around().map(|(cell, seen)| seen.hits - u32::from(own.binary_search(&cell).is_ok())).sum();
             let passes = self.0.get(&cell).map_or(0, |seen| seen.passes);
             is_in_free.push(passes >= MIN_PASSES && hits < passes);
-            linked += u32::from(around().any(|(_, seen)| seen.before > 0));
             let elsewhere = |(cell, seen): (Cell, Seen)| {
                 seen.hits > seen.before + seen.after + u32::from(own.binary_search(&cell).is_ok())
             };
             seen_once += u32::from(!around().any(elsewhere));
         }
         let share = |count: u32| f64::from(count) / scan.hits.len().max(1) as f64;
-        let link = if is_first || scan.hits.is_empty() { 1.0 } else { share(linked) };
+        let link = if is_first || scan.hits.is_empty() { 1.0 } else { self.linked(scan) };
         let in_free = scan.on_surfaces(&is_in_free);
         Judged { in_free: share(in_free), link, seen_once: share(seen_once) }
     }

@@ -1,10 +1,12 @@
 //! Whether a map is right, as far as it can be known without the truth: a scan that is out of place hits where other scans saw
 //! free space, and a trajectory that is broken has a scan that fits to none before it.
 
+mod bridged;
 mod evidence;
 #[cfg(test)]
 mod tests;
 
+use bridged::bridged;
 use evidence::{Evidence, Judged, PlacedScan};
 use interfaces::{LaserReading, Spread, heading_rad, median};
 use localizer::{PoseState, TrajectoryPose};
@@ -112,7 +114,8 @@ pub struct Quality {
     /// The number of scans that fit to none of the fifteen before, or after a turn that only they show: the trajectory can be broken
     /// there.
     pub weak_links: usize,
-    /// The share of readings without a certain pose.
+    /// The share of readings without a certain pose; without those that see nothing for a short time, if the scans after them agree
+    /// with those before.
     pub left_out: f64,
     /// The share of hits on surfaces that were seen on one pass only: nothing confirms them.
     pub seen_once: f64,
@@ -187,6 +190,8 @@ impl Quality {
 pub(crate) struct QualityCheck {
     counted: Vec<CountedScan>,
     readings: usize,
+    /// The readings without a hit.
+    blind: Vec<usize>,
     last: Option<Isometry2<f64>>,
 }
 
@@ -203,6 +208,7 @@ struct CountedScan {
 impl QualityCheck {
     /// Adds the next reading; `pose` is what is known of its pose so far.
     pub(crate) fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
+        self.blind.extend(reading.hits().next().is_none().then_some(self.readings));
         self.readings += 1;
         if self.last.is_some_and(|last| COUNTED.contains(&last.inv_mul(pose))) {
             return;
@@ -227,7 +233,9 @@ impl QualityCheck {
             return (Quality { scans: counted.len(), left_out, ..Quality::default() }, Vec::new());
         }
         let placed = |scan: &CountedScan| PlacedScan::new(&poses[scan.reading].pose, &scan.laser, &scan.hits);
-        let judged = Evidence::judge(&counted.iter().map(placed).collect::<Vec<_>>());
+        let placed: Vec<PlacedScan> = counted.iter().map(placed).collect();
+        let judged = Evidence::judge(&placed);
+        let numbers: Vec<usize> = counted.iter().map(|scan| scan.reading).collect();
         let at = |scan: usize| poses[counted[scan].reading];
         let share = |of: fn(&Judged) -> bool| {
             judged.iter().filter(|scan| of(scan)).count() as f64 / judged.len() as f64
@@ -241,7 +249,7 @@ impl QualityCheck {
             contradicting: share(|scan| scan.in_free > CONTRADICTING),
             worst_stretch: judged.windows(STRETCH).map(mean).fold(0.0, f64::max),
             weak_links: weak.iter().filter(|is_weak| **is_weak).count(),
-            left_out,
+            left_out: left_out - bridged(&self.blind, &numbers, &placed, poses),
             seen_once: judged.iter().map(|scan| scan.seen_once).sum::<f64>() / judged.len() as f64,
             scale: scale(&counted, poses),
             doubts,

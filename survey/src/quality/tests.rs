@@ -102,6 +102,35 @@ fn a_log_may_begin_with_scans_that_show_nothing() {
     assert_eq!(links, [1.0, 1.0, 1.0, 1.0, 0.0]);
 }
 
+/// What a drive finds that sees nothing for some time, while the odometry turns by an angle that the robot does not.
+fn found_after(blind_s: f64, slip_rad: f64) -> Quality {
+    let (mut readings, _) = crate::tests::drive(2, 180.0);
+    let blind = 60.0..60.0 + blind_s;
+    let slip = pose(3.0 * slip_rad, 0.0, slip_rad);
+    let mut begin = None;
+    for reading in &mut readings {
+        if blind.contains(&reading.time_s) {
+            reading.scan.ranges_m.fill(f32::INFINITY);
+        } else if reading.time_s > blind.end {
+            let begin = *begin.get_or_insert(reading.pose);
+            reading.pose = begin * slip * begin.inv_mul(&reading.pose);
+        }
+    }
+    let settings = crate::SurveySettings::of(interfaces::PoseMode::Localized);
+    crate::tests::first_pass(&settings, &readings).quality
+}
+
+/// Outdoors, the odometry bridges what the laser does not see, if the scans after it confirm it; a robot that is lost after it has no map.
+#[test]
+fn a_time_without_returns_is_bridged_if_later_scans_agree() {
+    let bridged = found_after(20.0, 0.0);
+    assert!(bridged.left_out < 0.02 && bridged.verdict() <= Verdict::UsableWithCare, "{bridged:?}");
+    let lost = found_after(20.0, 1.0);
+    assert!(lost.left_out > 0.1 && lost.verdict() > Verdict::Good, "{lost:?}");
+    let long = found_after(40.0, 0.0);
+    assert!(long.left_out > 0.2 && long.verdict() == Verdict::NotUsable, "{long:?}");
+}
+
 /// Too few scans say nothing.
 #[test]
 fn a_robot_that_rests_is_not_judged() {

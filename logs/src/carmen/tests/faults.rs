@@ -101,3 +101,23 @@ fn a_log_whose_clock_is_set_has_the_date_of_its_longest_part() {
     the date and the hours are those of the longest part between jumps of the clock (36.9 s of 39.9 s)
     ");
 }
+
+/// A scan whose first reading was measured at a time.
+fn measured(measured_s: f64, time_s: f64) -> String {
+    scan(time_s).replacen("1.5", &format!("{:.3}", 30.0 - 0.5 * measured_s), 1)
+}
+
+#[test]
+fn scans_that_come_again_are_left_out() {
+    let same_time = drive(|time_s| odom(time_s) + &measured(time_s, time_s).repeat(2));
+    let new_time = drive(|time_s| odom(time_s) + &measured((time_s / 0.2 + 0.1).floor() * 0.2, time_s));
+    for (text, scans) in [(same_time, 400), (new_time, 201)] {
+        let log = open("test.log", text.as_bytes()).unwrap();
+        assert_eq!((log.summary().scans, log.summary().has_times), (scans, true));
+        assert_eq!([readings(&text).len(), log.reference_poses().unwrap().unwrap().len()], [scans; 2]);
+        assert_has(&notes(&text).join(" "), &["scans come again, with one time or after a motion"]);
+    }
+    // A robot that stands.
+    let stands = drive(|time_s| odom_at(time_s.min(20.0), time_s) + &measured(time_s.min(20.0), time_s));
+    assert_eq!((readings(&stands).len(), notes(&stands)), (400, Vec::<String>::new()));
+}
