@@ -25,11 +25,9 @@ from ._native import (
     Situation,
     SnapshotError,
     Spec,
-    Survey,
     World,
     WorldError,
     __version__,
-    map_log,
     strategies,
     trial,
 )
@@ -47,11 +45,9 @@ __all__ = [
     "Situation",
     "SnapshotError",
     "Spec",
-    "Survey",
     "World",
     "WorldError",
     "__version__",
-    "map_log",
     "strategies",
     "trial",
 ]

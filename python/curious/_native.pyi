@@ -283,33 +283,6 @@ class Forecast:
     def expiry(self) -> Floats: ...
 
 @final
-class Survey:
-    @property
-    def mapper(self) -> Mapper: ...
-    @property
-    def trajectory(self) -> Floats: ...
-    @property
-    def verdict(self) -> Literal["good", "usable with care", "not usable"]: ...
-    @property
-    def reasons(self) -> list[str]: ...
-    @property
-    def certain(self) -> list[bool]: ...
-    @property
-    def permanent(self) -> NDArray[np.int8]: ...
-    @property
-    def places(self) -> list[dict[str, Any]]: ...
-
-def map_log(
-    log: Log,
-    *,
-    pose: Literal["localized", "odometry", "exact", "corrected"] | None = None,
-    cell: float = 0.05,
-    max_range: float = 20.0,
-    estimator: str | None = None,
-    range_noise: float | None = None,
-) -> Survey: ...
-
-@final
 class Situation:
     @property
     def mapper(self) -> Mapper: ...

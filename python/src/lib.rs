@@ -32,7 +32,7 @@ mod _native {
     #[pymodule_export]
     use crate::localizer::{Estimate, Localizer};
     #[pymodule_export]
-    use crate::logs::{Log, Readings, Survey, map_log};
+    use crate::logs::{Log, Readings};
     #[pymodule_export]
     use crate::mapper::Mapper;
     #[pymodule_export]

@@ -162,30 +162,18 @@ def carmen(path, scans=300):
     path.write_text("\n".join(lines) + "\n")
 
 
-def test_a_log_is_read_and_mapped(tmp_path):
+def test_a_log_is_read(tmp_path):
     path = tmp_path / "a.log"
     carmen(path)
     log = curious.Log(path)
     assert len(log) == 300 and log.stands and log.duration == pytest.approx(29.9, abs=0.01)
     readings = list(log)
     assert len(readings) == 300 and readings[0].ranges.shape == (181,) and readings[0].time == 0.0
-    survey = curious.map_log(log)
-    assert survey.trajectory.shape == (300, 4) and len(survey.certain) == 300
-    assert survey.places and survey.places[0]["changes"] >= 2
-    assert np.hypot(survey.places[0]["x_m"] - 1.0, survey.places[0]["y_m"]) < 0.4
-    assert survey.permanent.shape == survey.mapper.shape == survey.mapper.rates().shape
-    with pytest.raises(ValueError, match="localized, odometry, exact or corrected"):
-        curious.map_log(log, pose="perfect")
-    with pytest.raises(ValueError, match="corrected = True"):
-        curious.map_log(log, pose="corrected")
     with pytest.raises(ValueError, match="map_frame"):
         curious.Log(path, map_frame="map")
     # A laser that stands has the same pose in all FLASER lines.
     corrected = curious.Log(path, corrected=True)
     assert corrected.corrected and not log.corrected
-    assert curious.map_log(corrected).places[0]["changes"] >= 2
-    with pytest.raises(ValueError, match="corrected poses"):
-        curious.map_log(corrected, pose="odometry")
     with pytest.raises(FileNotFoundError):
         curious.Log(tmp_path / "b.log")
     (tmp_path / "c.log").write_text("FLASER 3 1.0 x\n")
