@@ -1,5 +1,6 @@
 //! A log of any format.
 
+use crate::own_parts::OwnParts;
 use crate::summary::{LogError, LogSummary};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
@@ -16,6 +17,7 @@ pub struct Log {
     summary: LogSummary,
     /// The times of the readings, repaired, s.
     times_s: Arc<[f64]>,
+    own_parts: Arc<OwnParts>,
 }
 
 /// Readings with their times as written.
@@ -37,8 +39,15 @@ pub(crate) trait Source: Debug + Send + Sync {
 }
 
 impl Log {
-    pub(crate) fn new(source: impl Source + 'static, times_s: Vec<f64>, summary: LogSummary) -> Self {
-        Self { source: Arc::new(source), summary, times_s: times_s.into() }
+    /// `own_parts` has learned from all readings.
+    pub(crate) fn new(
+        source: impl Source + 'static,
+        times_s: Vec<f64>,
+        mut own_parts: OwnParts,
+        mut summary: LogSummary,
+    ) -> Self {
+        summary.notes.extend(own_parts.judge());
+        Self { source: Arc::new(source), summary, times_s: times_s.into(), own_parts: Arc::new(own_parts) }
     }
 
     /// What the log contains, and what was repaired.
@@ -47,13 +56,14 @@ impl Log {
     }
 
     /// The readings in the order of their times, from the first on. Times are since the first reading. The poses are those of
-    /// the odometry, interpolated to the end of the scan, and begin at the origin.
+    /// the odometry, interpolated to the end of the scan, and begin at the origin. Ranges of [parts of the robot](OwnParts) are
+    /// invalid.
     ///
     /// # Errors
     ///
     /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        Readings::new(self.source.raw_readings()?, self.times_s.clone())
+        Readings::new(self.source.raw_readings()?, self.times_s.clone(), self.own_parts.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -88,11 +98,16 @@ pub struct Readings {
     /// `None` after the last reading.
     thread: Option<JoinHandle<()>>,
     times_s: Arc<[f64]>,
+    own_parts: Arc<OwnParts>,
     given: usize,
 }
 
 impl Readings {
-    fn new(mut raw: Box<dyn RawReadings + Send>, times_s: Arc<[f64]>) -> Result<Self, LogError> {
+    fn new(
+        mut raw: Box<dyn RawReadings + Send>,
+        times_s: Arc<[f64]>,
+        own_parts: Arc<OwnParts>,
+    ) -> Result<Self, LogError> {
         let (to, waiting) = sync_channel(AHEAD);
         // Ends with the last reading, and when nobody waits for the next one.
         let read = move || {
@@ -105,7 +120,7 @@ impl Readings {
         };
         let failed = |why| LogError::Io { file: "the thread that reads a log".to_owned(), why };
         let thread = Some(Builder::new().name("log".to_owned()).spawn(read).map_err(failed)?);
-        Ok(Self { waiting, thread, times_s, given: 0 })
+        Ok(Self { waiting, thread, times_s, own_parts, given: 0 })
     }
 }
 
@@ -129,6 +144,7 @@ impl Iterator for Readings {
         let shift_s = time_s - reading.time_s;
         reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
         reading.time_s = time_s;
+        self.own_parts.remove(&mut reading);
         Some(Ok(reading))
     }
 }
@@ -152,7 +168,7 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into()).unwrap();
+        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into(), Arc::default()).unwrap();
         let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
         assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");

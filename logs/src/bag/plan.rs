@@ -78,7 +78,8 @@ impl Plan {
     }
 }
 
-/// The lasers on the topics that were chosen. Two topics of one frame are one laser, filtered or not.
+/// The lasers on the topics that were chosen. Two topics of one frame are one laser: of `/scan` and `/scan_filtered`, the filtered
+/// one is used, without the parts of the robot that the user has removed.
 fn chosen_lasers<'a>(
     found: &'a Inventory,
     choice: &TopicChoice,
@@ -100,7 +101,9 @@ fn chosen_lasers<'a>(
         return Ok(lasers);
     }
     lasers.sort_by_key(|laser| {
-        (laser.frame.as_str(), std::cmp::Reverse(laser.scans), laser.topic.len(), laser.topic.as_str())
+        let is_filtered = laser.topic.ends_with("_filtered");
+        let most = std::cmp::Reverse((is_filtered, laser.scans));
+        (laser.frame.as_str(), most, laser.topic.len(), laser.topic.as_str())
     });
     let mut kept: Vec<&LaserTopic> = Vec::new();
     for laser in lasers {
