@@ -26,10 +26,12 @@ pub(crate) trait RawReadings {
     fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError>;
 }
 
+type Raw = Box<dyn RawReadings + Send>;
+
 /// A log of one format, after its inspection.
 pub(crate) trait Source: Debug + Send + Sync {
     /// The readings with their times as written, from the first on.
-    fn raw_readings(&self) -> Result<Box<dyn RawReadings + Send>, LogError>;
+    fn raw_readings(&self) -> Result<Raw, LogError>;
     /// As [`Log::content_hash`].
     fn content_hash(&self) -> Result<u128, LogError>;
     /// As [`Log::reference_poses`].
@@ -103,11 +105,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    fn new(
-        mut raw: Box<dyn RawReadings + Send>,
-        times_s: Arc<[f64]>,
-        own_parts: Arc<OwnParts>,
-    ) -> Result<Self, LogError> {
+    fn new(mut raw: Raw, times_s: Arc<[f64]>, own_parts: Arc<OwnParts>) -> Result<Self, LogError> {
         let (to, waiting) = sync_channel(AHEAD);
         // Ends with the last reading, and when nobody waits for the next one.
         let read = move || {
@@ -168,7 +166,8 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into(), Arc::default()).unwrap();
+        let mut readings =
+            Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into(), Arc::default()).unwrap();
         let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
         assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");
