@@ -31,6 +31,7 @@ use crate::bounds::Unpacked;
 use crate::bytes::{Bytes, GZIP, content_hash};
 use crate::checks::{MIN_MOTION_M, MIN_MOTION_RAD};
 use crate::log::{Log, RawReadings, Source};
+use crate::own_parts::OwnParts;
 use crate::summary::{LogError, LogSummary, TopicChoice};
 use flate2::bufread::MultiGzDecoder;
 use geometry::Geometry;
@@ -82,7 +83,12 @@ impl CarmenLog {
             log.check_corrected(&summary)?;
             log.rules.takes_scan_poses = true;
         }
-        Ok(Log::new(log, looks, summary))
+        // Which poses are those of the odometry is known only now.
+        let (mut own_parts, mut readings) = (OwnParts::default(), log.raw_readings()?);
+        while let Some(reading) = readings.next_reading()?.filter(|_| !summary.stands) {
+            own_parts.add(&reading);
+        }
+        Ok(Log::new(log, looks, own_parts, summary))
     }
 
     /// Checks that the log has corrected poses.

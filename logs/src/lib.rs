@@ -13,9 +13,11 @@ mod bytes;
 mod carmen;
 mod checks;
 mod log;
+mod own_parts;
 mod summary;
 
 pub use log::{Log, Readings};
+pub use own_parts::OwnParts;
 pub use ros::{self, McapWriter};
 pub use summary::{LogError, LogSummary, TopicChoice};
 

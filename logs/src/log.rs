@@ -1,6 +1,7 @@
 //! A log of any format.
 
 use crate::checks::TimedLooks;
+use crate::own_parts::OwnParts;
 use crate::summary::{LogError, LogSummary};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
@@ -17,6 +18,7 @@ pub struct Log {
     summary: LogSummary,
     /// With the times of the readings, repaired, s.
     looks: Arc<TimedLooks>,
+    own_parts: Arc<OwnParts>,
 }
 
 /// Readings with their times as written.
@@ -25,10 +27,12 @@ pub(crate) trait RawReadings {
     fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError>;
 }
 
+type Raw = Box<dyn RawReadings + Send>;
+
 /// A log of one format, after its inspection.
 pub(crate) trait Source: Debug + Send + Sync {
     /// The readings with their times as written, from the first on.
-    fn raw_readings(&self) -> Result<Box<dyn RawReadings + Send>, LogError>;
+    fn raw_readings(&self) -> Result<Raw, LogError>;
     /// As [`Log::content_hash`].
     fn content_hash(&self) -> Result<u128, LogError>;
     /// As [`Log::reference_poses`].
@@ -38,8 +42,15 @@ pub(crate) trait Source: Debug + Send + Sync {
 }
 
 impl Log {
-    pub(crate) fn new(source: impl Source + 'static, looks: TimedLooks, summary: LogSummary) -> Self {
-        Self { source: Arc::new(source), summary, looks: looks.into() }
+    /// `own_parts` has learned from all readings.
+    pub(crate) fn new(
+        source: impl Source + 'static,
+        looks: TimedLooks,
+        mut own_parts: OwnParts,
+        mut summary: LogSummary,
+    ) -> Self {
+        summary.notes.extend(own_parts.judge());
+        Self { source: Arc::new(source), summary, looks: looks.into(), own_parts: Arc::new(own_parts) }
     }
 
     /// What the log contains, and what was repaired.
@@ -48,13 +59,14 @@ impl Log {
     }
 
     /// The readings in the order of their times, from the first on. Times are since the first reading. The poses are those of
-    /// the odometry, interpolated to the end of the scan, and begin at the origin.
+    /// the odometry, interpolated to the end of the scan, and begin at the origin. Ranges of [parts of the robot](OwnParts) are
+    /// invalid.
     ///
     /// # Errors
     ///
     /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        Readings::new(self.source.raw_readings()?, self.looks.clone())
+        Readings::new(self.source.raw_readings()?, self.looks.clone(), self.own_parts.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -89,11 +101,12 @@ pub struct Readings {
     /// `None` after the last reading.
     thread: Option<JoinHandle<()>>,
     timed: Arc<TimedLooks>,
+    own_parts: Arc<OwnParts>,
     given: usize,
 }
 
 impl Readings {
-    fn new(mut raw: Box<dyn RawReadings + Send>, looks: Arc<TimedLooks>) -> Result<Self, LogError> {
+    fn new(mut raw: Raw, looks: Arc<TimedLooks>, own_parts: Arc<OwnParts>) -> Result<Self, LogError> {
         let (to, waiting) = sync_channel(AHEAD);
         let timed = looks.clone();
         // Ends with the last reading, and when nobody waits for the next one.
@@ -108,7 +121,7 @@ impl Readings {
         };
         let failed = |why| LogError::Io { file: "the thread that reads a log".to_owned(), why };
         let thread = Some(Builder::new().name("log".to_owned()).spawn(read).map_err(failed)?);
-        Ok(Self { waiting, thread, timed, given: 0 })
+        Ok(Self { waiting, thread, timed, own_parts, given: 0 })
     }
 }
 
@@ -133,6 +146,7 @@ impl Iterator for Readings {
         let shift_s = time_s - reading.time_s;
         reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
         reading.time_s = time_s;
+        self.own_parts.remove(&mut reading);
         Some(Ok(reading))
     }
 }
@@ -157,8 +171,12 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let mut readings =
-            Readings::new(Box::new(Some3(0)), (vec![1.0, 2.0, 3.0, 4.0], Looks::default()).into()).unwrap();
+        let mut readings = Readings::new(
+            Box::new(Some3(0)),
+            (vec![1.0, 2.0, 3.0, 4.0], Looks::default()).into(),
+            Arc::default(),
+        )
+        .unwrap();
         let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
         assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");

@@ -2,6 +2,7 @@
 
 use crate::message::{Header, LaserScan, Message, Odometry, Time, Topic, Transforms};
 use interfaces::{LaserReading, heading_rad};
+use logs::OwnParts;
 use logs::assemble::{self, Assembler, Chain, Waiting};
 use nalgebra::{Isometry2, Isometry3};
 use std::time::{Duration, Instant};
@@ -135,6 +136,7 @@ pub(crate) struct Source {
     laser: Option<(String, Instant)>,
     /// The frame of a laser without a place on the robot.
     lost_laser: Option<String>,
+    own_parts: OwnParts,
     pub(crate) count: ScanCount,
     notes: Vec<String>,
 }
@@ -185,7 +187,7 @@ impl Source {
             if self.assembler.must_wait(first.time_s) && !is_overdue {
                 return None;
             }
-            let (reading, Arrival { end_ns, is_restart, .. }) = self.assembler.next_reading()?;
+            let (mut reading, Arrival { end_ns, is_restart, .. }) = self.assembler.next_reading()?;
             let (odometry, time_s) = (&self.assembler.odometry, reading.time_s);
             let covers = |(oldest_s, newest_s)| oldest_s <= time_s && time_s <= newest_s + LATEST_S;
             if !odometry.span_s().is_some_and(covers) {
@@ -194,6 +196,9 @@ impl Source {
                 self.notes.push("a scan is left out: there is no pose of the robot at its time".to_owned());
                 continue;
             }
+            self.own_parts.add(&reading);
+            self.notes.extend(self.own_parts.judge());
+            self.own_parts.remove(&mut reading);
             let (in_odom, in_first_odom) =
                 (odometry.origin() * reading.pose, odometry.first() * reading.pose);
             let stamp = Time::from_ns(end_ns);

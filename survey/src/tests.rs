@@ -1,6 +1,7 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
 mod corrected;
+mod own_parts;
 mod refused;
 mod scaled;
 

@@ -158,5 +158,7 @@ pub(super) fn no_scans(topics: &[Arc<Topic>]) -> String {
         );
     }
     let types = listed(topics.iter().map(|topic| topic.type_name.as_str()));
-    format!("no message of sensor_msgs/msg/LaserScan, encoded as cdr, which is what is read; there are {types}")
+    format!(
+        "no message of sensor_msgs/msg/LaserScan, encoded as cdr, which is what is read; there are {types}"
+    )
 }

@@ -78,7 +78,8 @@ impl Plan {
     }
 }
 
-/// The lasers on the topics that were chosen. Two topics of one frame are one laser, filtered or not.
+/// The lasers on the topics that were chosen. Two topics of one frame are one laser, and the one with more scans is used. Of `/scan`
+/// and `/scan_filtered`, this is the filtered one, without the parts of the robot, unless it has less than half of the scans.
 fn chosen_lasers<'a>(
     found: &'a Inventory,
     choice: &TopicChoice,
@@ -100,7 +101,8 @@ fn chosen_lasers<'a>(
         return Ok(lasers);
     }
     lasers.sort_by_key(|laser| {
-        (laser.frame.as_str(), std::cmp::Reverse(laser.scans), laser.topic.len(), laser.topic.as_str())
+        let preferred = if laser.topic.ends_with("_filtered") { 2 * laser.scans } else { laser.scans };
+        (laser.frame.as_str(), std::cmp::Reverse(preferred), laser.topic.len(), laser.topic.as_str())
     });
     let mut kept: Vec<&LaserTopic> = Vec::new();
     for laser in lasers {
