@@ -20,11 +20,16 @@ pub fn be_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }
 
-/// Prints a note to the error output, unless only errors are printed.
-pub fn note(what: impl Display) {
+/// Prints lines about the work to the error output, unless only errors are printed.
+pub fn tell(what: impl Display) {
     if !QUIET.load(Ordering::Relaxed) {
-        say(stderr(), format_args!("note: {what}"));
+        say(stderr(), what);
     }
+}
+
+/// The same of a note.
+pub fn note(what: impl Display) {
+    tell(format_args!("note: {what}"));
 }
 
 /// Prints one line to the standard output: a line break in a name forges no other one.

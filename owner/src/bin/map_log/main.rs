@@ -14,7 +14,7 @@ use args::Args;
 use cli::bag::RunBag;
 use cli::flags::check_distinct;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
-use cli::terminal::{be_quiet, print_lines, say};
+use cli::terminal::{be_quiet, print_lines, say, tell};
 use files::{RunFolder, is_below};
 use logs::{Log, TopicChoice};
 use logs_in_order::Source;
@@ -69,13 +69,6 @@ impl Job<'_> {
             ""
         }
     }
-
-    /// Prints a line about the work to the error output.
-    fn say(&self, line: std::fmt::Arguments) {
-        if !self.args.quiet {
-            say(stderr(), line);
-        }
-    }
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
@@ -114,7 +107,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
             }
             _ => String::new(),
         };
-        job.say(format_args!("interrupted in the first pass: no results are written{kept}"));
+        tell(format_args!("interrupted in the first pass: no results are written{kept}"));
         return Ok(ExitCode::from(INTERRUPTED));
     }
     let learned = passes::learn(&job, &mut survey, &mut state_file, bag, folder.unfinished())?;

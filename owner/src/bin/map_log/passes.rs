@@ -6,7 +6,7 @@ use anyhow::{Context, Error, anyhow};
 use cli::bag::RunBag;
 use cli::program::{Failure, input};
 use cli::progress::Progress;
-use cli::terminal::{note, say};
+use cli::terminal::{note, say, tell};
 use draw::scene::Scene;
 use draw::view::View;
 use mapper::{NoReturnDistrust, NoReturnEvidence};
@@ -52,7 +52,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, state: &mut SurveyStateFile
         match found {
             Ok(()) if survey.verdict() == Verdict::NotUsable && !job.args.accept_map => {
                 if state.is_kept() {
-                    job.say(format_args!("the map is not usable: the state stays as it was (--accept-map)"));
+                    tell(format_args!("the map is not usable: the state stays as it was (--accept-map)"));
                 }
                 state.leave();
             }
@@ -62,7 +62,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, state: &mut SurveyStateFile
                 let why = Error::from(why).context(format!("cannot use {}", source.entry.name));
                 if state.is_kept() {
                     let way_out = "if it is of another place, it needs a --state of its own";
-                    job.say(format_args!("{} is not added to the state: {way_out}", source.entry.name));
+                    tell(format_args!("{} is not added to the state: {way_out}", source.entry.name));
                 }
                 return Err(input(why));
             }
@@ -81,7 +81,7 @@ fn begin(job: &Job, number: usize, stage: Stage) -> Progress {
         Stage::Search => "search for its place",
     };
     let source = &job.sources[number];
-    job.say(format_args!("{}: {what}", source.entry.name));
+    tell(format_args!("{}: {what}", source.entry.name));
     match stage {
         Stage::Loops => Progress::of_work(format!("{}: {what}", source.entry.name), job.args.quiet),
         _ => Progress::of_count(source.log.summary().scans, "scans", job.args.quiet),
@@ -176,8 +176,8 @@ impl Learned {
         let (name, log) = (&source.entry.name, job.first_log + number);
         let used = survey.logs().get(log).map_or(0, |log| log.used);
         match used {
-            0 => job.say(format_args!("{name}: learning what changes")),
-            _ => job.say(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
+            0 => tell(format_args!("{name}: learning what changes")),
+            _ => tell(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
         }
         let busy = Progress::of_work(format!("{name}: what beams without a return mean"), job.args.quiet);
         let replay = survey.replay(log, &source.log).map_err(input);
@@ -187,7 +187,7 @@ impl Learned {
         let mut replay = replay.ok_or_else(changed)?;
         for scanner in survey.no_returns().into_iter().filter(|scanner| scanner.silent > 0) {
             if let Some(ignored) = ignored(&scanner) {
-                job.say(format_args!("{name}: {ignored}"));
+                tell(format_args!("{name}: {ignored}"));
             }
             self.no_return.push(scanner);
         }

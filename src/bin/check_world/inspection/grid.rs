@@ -1,6 +1,7 @@
 //! The description of a grid world.
 
-use super::{Content, calendar};
+use super::Content;
+use calendar::moment;
 use evaluation::scenes::Displayed;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
@@ -29,8 +30,8 @@ pub(super) fn content(world: &GridSpec) -> Content {
         lines.push(("chance", both.collect::<Vec<_>>().join(", ")));
     }
     lines.extend(world.calendar.map(|steps| {
-        let starts = calendar::of_world(steps.starts_s);
-        ("calendar", format!("{starts}, steps of {} s", steps.step_s))
+        let starts = moment(steps.starts_s);
+        ("calendar", format!("the world starts on {starts}, steps of {} s", steps.step_s))
     }));
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
     Content { kind: "grid world", description: world.description.to_owned(), lines, scene: world.scene() }
@@ -38,11 +39,10 @@ pub(super) fn content(world: &GridSpec) -> Content {
 
 /// The name, the path and the dwell time of a block.
 fn describe(block: &BlockSpec) -> String {
-    if let Some(schedule) = &block.schedule {
+    if block.schedule.is_some() {
         let (first, last) = (block.path[0], block.path[block.path.len() - 1]);
-        let when = calendar::of_thing(schedule);
         return format!(
-            "`{}` is at [{}, {}], else at [{}, {}], {when}",
+            "`{}` is at [{}, {}], else at [{}, {}], by a schedule",
             block.name, first.x, first.y, last.x, last.y
         );
     }

@@ -1,6 +1,5 @@
 //! The content of a world file of any format, as text and as a scene.
 
-mod calendar;
 mod grid;
 mod physics;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The description of physics worlds and floor plans.
 
-use super::{Content, calendar};
+use super::Content;
+use calendar::moment;
 use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use interfaces::{GridFrame, printable};
@@ -32,7 +33,9 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         ("time", format!("physics steps of {} s", world.step_s)),
         ("walls", format!("{}", world.walls.len())),
     ];
-    lines.extend(world.starts_s.map(|starts_s| ("calendar", calendar::of_world(starts_s))));
+    lines.extend(
+        world.starts_s.map(|starts_s| ("calendar", format!("the world starts on {}", moment(starts_s)))),
+    );
     for (index, obstacle) in world.obstacles.iter().enumerate() {
         let parts = world.obstacles.iter().enumerate().filter(|(part, other)| other.thing(*part) == index);
         match parts.filter(|(_, part)| part.place() == 0).count() {
@@ -81,11 +84,11 @@ fn thing_line(obstacle: &ObstacleSpec, parts: usize) -> String {
     let size = obstacle.shape.half_m * 2.0;
     let what = match &obstacle.motion {
         Motion::Fixed => "a fixed box".to_owned(),
-        Motion::Scheduled(schedule) => {
+        Motion::Scheduled(_) => {
             let boxes = if parts == 1 { "a box".to_owned() } else { format!("a thing of {parts} boxes") };
             let places = obstacle.part.map_or(1, |part| part.places);
             let places = if places == 1 { String::new() } else { format!(" at one of {places} places") };
-            format!("{boxes} that is there{places} {}", calendar::of_thing(schedule))
+            format!("{boxes} that comes and goes{places} by a schedule")
         }
         Motion::Pushed(pushed) => format!("a box of {} kg that can be pushed", short(pushed.mass_kg)),
         Motion::Path(path) => {
@@ -102,13 +105,13 @@ fn thing_line(obstacle: &ObstacleSpec, parts: usize) -> String {
                 Opening::Random { closed_s, open_s } => {
                     format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
                 }
-                Opening::Scheduled { schedule, waits_for_robots } => {
+                Opening::Scheduled { waits_for_robots, .. } => {
                     let waits = if *waits_for_robots {
                         "; open while a robot needs it to get to its dock"
                     } else {
                         ""
                     };
-                    format!("closed {}{waits}", calendar::of_thing(schedule))
+                    format!("by a schedule{waits}")
                 }
                 Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
             };
@@ -173,7 +176,7 @@ fn robot_line(robot: &RobotSpec) -> String {
     parts.extend(
         others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
     );
-    parts.extend(robot.patrol.as_ref().map(calendar::of_robot));
+    parts.extend(robot.patrol.as_ref().map(|_| "on patrol by a schedule".to_owned()));
     parts.join("; ")
 }
 
