@@ -185,8 +185,7 @@ impl Inspection {
 
     fn summarized(mut self, takes_scan_poses: bool) -> (Rules, TimedLooks, LogSummary) {
         self.looks.finish();
-        self.times_s = self.looks.of_looks(self.times_s);
-        self.recorded_s = self.looks.of_looks(self.recorded_s);
+        [self.times_s, self.recorded_s] = [self.times_s, self.recorded_s].map(|it| self.looks.of_looks(it));
         let Self { mut geometry, mut notes, .. } = self;
         notes.extend(self.invalid_scans.note("scan", "scans"));
         notes.extend(self.invalid_poses.note("ODOM line", "ODOM lines"));

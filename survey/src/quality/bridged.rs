@@ -8,7 +8,7 @@ const LONGEST_S: f64 = 30.0;
 /// The poses are bridged if of this number of scans after it, more than this share of the hits is near hits of the scans before it: after 6
 /// to 25 s, at least 0.7, and at most 0.23 where the odometry had slipped.
 const RETURNED: usize = 10;
-const FITTING: f64 = 0.5;
+const FITTING: f64 = 0.5 * RETURNED as f64;
 /// The most times without a hit for which this is looked for, each in the whole route: further ones count as uncertain.
 const MOST: usize = 50;
 
@@ -20,8 +20,7 @@ pub(super) fn bridged(blind: &[usize], numbers: &[usize], scans: &[PlacedScan], 
         let (before, after) = scans.split_at(numbers.partition_point(|number| *number < first));
         let links = Evidence::links(before, after);
         let mut sums = links.windows(RETURNED).map(|links| links.iter().sum::<f64>());
-        let is_short = poses[last].time_s - poses[first].time_s <= LONGEST_S;
-        is_short && sums.any(|sum| sum > FITTING * RETURNED as f64)
+        poses[last].time_s - poses[first].time_s <= LONGEST_S && sums.any(|sum| sum > FITTING)
     };
     let is_uncertain = |number: &&usize| poses[**number].state == PoseState::Uncertain;
     let blind: Vec<usize> = blind.iter().filter(is_uncertain).copied().collect();

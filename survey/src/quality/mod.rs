@@ -275,13 +275,16 @@ fn scale(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Option<f64> {
     median(ratios.iter().copied()).filter(|_| ratios.len() >= MIN_SCANS / 2).filter(|scale| *scale > 0.0)
 }
 
-/// How much each scan turned from the one before otherwise than by the odometry, rad.
+/// How much each scan turned from the one before otherwise than by the odometry, rad, at least: where poses of the odometry are rare, its
+/// turn at a scan can be late, or early, and the next step or the step before makes up for it.
 fn turned(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Vec<f64> {
     let step = |pair: &[CountedScan]| {
         let found = poses[pair[0].reading].pose.inv_mul(&poses[pair[1].reading].pose);
-        heading_rad(&pair[0].odometry.inv_mul(&pair[1].odometry).inv_mul(&found)).abs()
+        heading_rad(&pair[0].odometry.inv_mul(&pair[1].odometry).inv_mul(&found))
     };
-    std::iter::once(0.0).chain(counted.windows(2).map(step)).collect()
+    let steps: Vec<f64> = [0.0; 2].into_iter().chain(counted.windows(2).map(step)).chain([0.0]).collect();
+    let least = |of: &[f64]| of[1].abs().min((of[0] + of[1]).abs()).min((of[1] + of[2]).abs());
+    steps.windows(3).map(least).collect()
 }
 
 /// Whether the trajectory can be broken before each scan.

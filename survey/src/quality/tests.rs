@@ -76,6 +76,35 @@ fn a_turn_against_the_odometry_needs_another_pass() {
     assert_eq!(weak(&judged, &turned), [5]);
 }
 
+/// Of an odometry with rare poses, a turn can come a scan late; one that it misses stays missed.
+#[test]
+fn a_turn_that_the_odometry_has_late_is_not_missed() {
+    let along = |turns_rad: [f64; 6]| -> Vec<Isometry2<f64>> {
+        let mut at = Isometry2::identity();
+        let mut step = |turn_rad| {
+            at *= pose(0.5, 0.0, turn_rad);
+            at
+        };
+        turns_rad.into_iter().map(&mut step).collect()
+    };
+    let missed = |found: [f64; 6], odometry: [f64; 6]| {
+        let scan = |(reading, odometry)| CountedScan {
+            reading,
+            odometry,
+            laser: Point2::origin(),
+            hits: Vec::new(),
+        };
+        let counted: Vec<CountedScan> = along(odometry).into_iter().enumerate().map(scan).collect();
+        turned(&counted, &super::tests::along(&along(found)))
+            .iter()
+            .filter(|turn| **turn > TURNED_RAD)
+            .count()
+    };
+    let found = [0.0, 0.7, 0.7, 1.0, 0.3, 0.0];
+    assert_eq!(missed(found, [0.0, 0.7, 0.9, 0.6, 0.5, 0.0]), 0);
+    assert_eq!(missed(found, [0.0, 0.7, 0.7, 0.0, 0.3, 0.0]), 1);
+}
+
 /// In a narrow place, several hits of a scan are in one cell. What another pass saw as well stays confirmed.
 #[test]
 fn hits_beside_each_other_do_not_hide_another_pass() {
