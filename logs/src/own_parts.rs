@@ -161,15 +161,15 @@ impl OwnParts {
         self.lasers.iter_mut().filter_map(Laser::judge).collect()
     }
 
-    /// Makes the ranges up to a part of the robot invalid: a part hides what is behind it.
+    /// Makes the ranges up to a part of the robot invalid, and beams without a return beside it: a part hides what is behind it.
     pub fn remove(&self, reading: &mut LaserReading) {
         let known = |laser: &&Laser| laser.mount == reading.mount && !laser.parts.is_empty();
         let Some(laser) = self.lasers.iter().find(known) else { return };
         for beam in 0..reading.scan.ranges_m.len() {
-            if reading.scan.ranges_m[beam]
-                <= laser.left_out_m[cyclic(reading.scan.angle_rad(beam), DIRECTIONS)]
-            {
-                reading.scan.ranges_m[beam] = f32::NAN;
+            let left_out_m = laser.left_out_m[cyclic(reading.scan.angle_rad(beam), DIRECTIONS)];
+            let range_m = &mut reading.scan.ranges_m[beam];
+            if *range_m <= left_out_m || *range_m == f32::INFINITY && !left_out_m.is_nan() {
+                *range_m = f32::NAN;
             }
         }
     }

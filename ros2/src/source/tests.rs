@@ -182,6 +182,29 @@ fn odometry_on_a_topic_is_used_where_tf_has_none() {
     assert!((live.reading.twist.angular_radps - 1.0).abs() < 1e-6);
 }
 
+/// A robot that drives a circle, with a post at the left of its laser.
+#[test]
+fn a_part_of_the_robot_is_left_out_once_it_is_known() {
+    let mut heard = Heard::robot();
+    let mut left_m = Vec::new();
+    for step in 11..100_u32 {
+        let time_s = 0.1 * f64::from(step);
+        heard.now += Duration::from_millis(100);
+        let pose =
+            interfaces::pose(6.0, 0.0, 0.0) * interfaces::pose(time_s.sin(), 1.0 - time_s.cos(), time_s);
+        heard.take(Topic::Transforms, transform(time_s, "odom", "base_footprint", pose));
+        let Message::Scan(mut message) = scan(time_s - 0.12, "laser") else { panic!() };
+        message.ranges = vec![1.0 + time_s as f32, 2.0, 0.3 + 0.004 * (step % 3) as f32];
+        heard.take(Topic::Scan, Message::Scan(message));
+        left_m.extend(heard.next().map(|live| live.reading.scan.ranges_m[2]));
+    }
+    let seen = left_m.iter().take_while(|range_m| !range_m.is_nan()).count();
+    // Half a turn, with some scans in each direction.
+    assert!((25..50).contains(&seen) && left_m[seen..].iter().all(|range_m| range_m.is_nan()), "{left_m:?}");
+    let notes = heard.notes();
+    assert_eq!(notes.iter().filter(|note| note.contains("57° to 57°")).count(), 1, "{notes:?}");
+}
+
 #[test]
 fn what_is_missing_is_said() {
     let mut heard = Heard::nothing();

@@ -24,9 +24,12 @@ fn topics_of_one_frame_are_one_laser() {
     }
     let opened = bag.log();
     assert_eq!(opened.summary().scan_topics, ["/scan_filtered"]);
-    insta::assert_snapshot!(notes(&opened), @"/scan and /scan_filtered are of one laser (`laser`): /scan_filtered is used, --scan-topic names another");
+    insta::assert_snapshot!(notes(&opened), @"/scan_filtered and /scan are of one laser (`laser`): /scan_filtered is used, --scan-topic names another");
     let of = |topic: &str| TopicChoice { scan_topics: vec![topic.to_owned()], ..TopicChoice::default() };
     assert_eq!(bag.open(&of("scan")).unwrap().summary().scan_topics, ["/scan"]);
+    // A filter that was switched on late has too few scans.
+    (2..6).for_each(|time_s| drop(bag.laser(f64::from(time_s))));
+    assert_eq!(bag.log().summary().scan_topics, ["/scan"]);
     insta::assert_snapshot!(bag.open(&of("/front")).unwrap_err(), @"test: no scans on the topic `/front` of --scan-topic; there are /scan, /scan_filtered");
 }
 
