@@ -5,7 +5,7 @@ use interfaces::{LaserReading, heading_rad, rotation, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::TAU;
 
-/// A part is at most this far from the laser, m, and from the robot's origin if that is farther away.
+/// A part is at most this far from the laser, m, plus the distance of the laser from the robot's origin: the size of the body is unknown.
 const NEAR_M: f64 = 0.6;
 /// Ranges of one part differ by less than this from their mean, m: three standard deviations of a laser at short range.
 const SAME_M: f32 = 0.03;
