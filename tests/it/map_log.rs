@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 /// A folder for `map_log` with `a.mcap`: a bag of a robot with drifting odometry in a house, for 90 s.
 pub(crate) fn with_bag() -> Run {
     static DRIVE: LazyLock<Run> =
-        LazyLock::new(|| Run::quiet("--world drifting_house --seed 100 --duration 90 --mcap a.mcap"));
+        LazyLock::new(|| Run::quiet("--world drifting_house --seed 101 --duration 90 --mcap a.mcap"));
     let run = Run::of("map_log");
     fs::copy(DRIVE.path("a.mcap"), run.path("a.mcap")).unwrap();
     run

@@ -51,7 +51,7 @@ fn a_bag_is_mapped_along_the_poses_of_another_slam() {
     let seen_m2 = [&localized, &summary].map(|summary| summary.number("/seen_m2"));
     assert!((seen_m2[1] / seen_m2[0] - 1.0).abs() < 0.1, "{seen_m2:?}");
     // A later run knows it from the state.
-    run.goes_well("a.mcap --no-rrd --quiet --state s.state").says(&["a.mcap is learned already"]);
+    run.goes_well("a.mcap --no-rrd --state s.state").says(&["a.mcap is learned already"]);
     // Not without a map.
     let refused = run.refuses("a.mcap --pose corrected --map-frame slam --no-rrd --out other");
     assert!(refused.contains("a.mcap: no transform (tf) has the frame `slam`"), "{refused}");

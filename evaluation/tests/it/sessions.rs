@@ -126,7 +126,7 @@ fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
         let robot = physics_trial::robot(&settings, &mut world, None, pilot).unwrap();
         (world, robot)
     };
-    let (mut world, mut robot) = start(&here, 100);
+    let (mut world, mut robot) = start(&here, 101);
     while world.time_s() <= 150.0 {
         let turn = robot.step(world.sense()).unwrap();
         world.act(&turn.command);

@@ -56,7 +56,9 @@ fn an_odometry_of_something_else_is_refused() {
     assert_eq!(refused(|_, _| {}), None);
     // One that never moves says nothing.
     assert_eq!(refused(|_, reading| reading.pose = Isometry2::identity()), None);
-    for (unit, says) in [(0.3, "(the scans move 0.29 times as far)"), (3.28, "(the scans move 3.")] {
+    for (unit, says) in
+        [(0.3, "(the scans move 0.29 times as far and turn 1.0"), (3.28, "(the scans move 3.")]
+    {
         let scaled = |_, reading: &mut LaserReading| {
             reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= unit);
         };

@@ -206,9 +206,10 @@ impl SurfaceGrid {
 
     /// Remembers to which side the surface of a cell looks: to none if it has two faces.
     fn face(&mut self, index: usize, normal: Option<Vector2<f64>>) {
-        let (Some(normal), Some(surface)) = (normal, self.surfaces.stored_mut(index)) else { return };
+        let surface = self.surfaces.stored_mut(index).filter(|surface| surface.hits > 0);
+        let (Some(normal), Some(surface)) = (normal, surface) else { return };
         let [x, y] = surface.facing.map(f64::from);
-        if surface.hits <= 1 {
+        if surface.hits == 1 {
             surface.facing = [normal.x, normal.y].map(|side| (side * 100.0) as i8);
         } else if x * normal.x + y * normal.y < 0.0 {
             surface.facing = [0; 2];
