@@ -1,4 +1,4 @@
-/// The bits of a NaN that mean nothing.
+/// The payload of a NaN: bits that carry no meaning in arithmetic.
 const NAN_BITS: u32 = 0x003f_ffff;
 
 /// One scan of a planar laser, as ROS `sensor_msgs/LaserScan`, with the meaning of REP-117.
@@ -33,8 +33,8 @@ impl Scan {
         self.sweep_s * (last.saturating_sub(index) as f64 / last.max(1) as f64)
     }
 
-    /// The range of a beam whose hit does not count, and which is free up to there, m: NaN, so that who does not know the
-    /// distance, in mm in the bits that say nothing of a NaN, takes the beam as an invalid measurement.
+    /// The range of a beam that is free up to `clear_m`, m, and whose hit is not used: a NaN with this distance, mm, as its
+    /// payload. Code that does not ask [`Self::free_m`] sees an invalid measurement.
     pub fn free_to(clear_m: f64) -> f32 {
         f32::from_bits(f32::NAN.to_bits() | (clear_m * 1e3).clamp(0.0, f64::from(NAN_BITS)) as u32)
     }

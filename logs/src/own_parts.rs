@@ -11,7 +11,7 @@ const NEAR_M: f64 = 0.6;
 const SAME_M: f32 = 0.03;
 /// Ranges up to this far behind a part are those of the part, m: at its edge, a beam meets the part and what is behind it.
 const BEHIND_M: f32 = 0.1;
-/// The beams are told apart by their directions, in steps of 0.25°: some lasers have another number of beams in each scan.
+/// Beams are counted by their direction, in steps of 0.25°: some lasers have another number of beams in each scan.
 const DIRECTIONS: usize = 1440;
 /// A part hides this number of directions on both sides of it: at an edge, a beam meets the part only in some scans.
 const BESIDE: usize = 8;
@@ -57,8 +57,10 @@ impl Direction {
 
     fn is_part(&self) -> bool {
         let known = self.scans.iter().filter(|[_, all]| *all >= MIN_SCANS);
-        let shares: Vec<f64> = known.map(|[same, all]| f64::from(*same) / f64::from(*all)).collect();
-        shares.len() >= MIN_HEADINGS && shares.iter().sum::<f64>() >= MIN_SHARE * shares.len() as f64
+        let (headings, shares) = known.fold((0, 0.0), |(headings, shares), [same, all]| {
+            (headings + 1, shares + f64::from(*same) / f64::from(*all))
+        });
+        headings >= MIN_HEADINGS && shares >= MIN_SHARE * headings as f64
     }
 }
 

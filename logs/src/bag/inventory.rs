@@ -120,20 +120,19 @@ pub(super) fn no_scans(topics: &[Arc<Topic>]) -> String {
     if topics.is_empty() {
         return "no message: the bag is empty".to_owned();
     }
-    let silent = listed(
-        topics.iter().filter(|topic| Kind::of(topic) == Some(Kind::Scans)).map(|topic| topic.name.as_str()),
-    );
-    if topics.iter().any(|topic| Kind::of(topic) == Some(Kind::Scans) && topic.encoding == "cdr") {
-        return format!(
-            "no message of sensor_msgs/msg/LaserScan on {silent}: was the laser's driver running?"
-        );
-    }
     if topics.iter().any(|topic| Kind::of(topic) == Some(Kind::Scans) && topic.encoding != "cdr") {
         let encodings = listed(topics.iter().map(|topic| match Kind::of(topic) {
             Some(Kind::Scans) => topic.encoding.as_str(),
             _ => topic.type_name.as_str(),
         }));
         return format!("the scans are not encoded as cdr, which is what is read; there are {encodings}");
+    }
+    let silent = || topics.iter().filter(|topic| Kind::of(topic) == Some(Kind::Scans));
+    if silent().next().is_some() {
+        let names = listed(silent().map(|topic| topic.name.as_str()));
+        return format!(
+            "no message of sensor_msgs/msg/LaserScan on {names}: was the laser's driver running?"
+        );
     }
     let of = |type_name: &str| {
         let is = |topic: &&Arc<Topic>| topic.type_name.replacen("/msg/", "/", 1) == type_name;

@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn one_number_in_all_directions_without_a_surface_beside_it_is_a_code() {
         for code in [65.535, 5.999, 2.85] {
-            // Millimeters, and so many different ranges that the rare ones are forgotten.
+            // Millimeters, and more different ranges than are counted: the rare ones are forgotten.
             for step_m in [0.001, 0.0] {
                 let found = codes_of(step_m, 0.03, code, true);
                 assert_eq!(found, [code], "{step_m}");

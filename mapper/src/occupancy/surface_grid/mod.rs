@@ -9,7 +9,8 @@
 //! 2. **A cell is cleared through its surface.** Each blocked cell keeps the mean of the points
 //!    that were hit. A scan contradicts the cell only when *both* beams that enclose this point pass
 //!    beyond the point. The point lies inside the body, so next to a standing body one of the two beams
-//!    always ends before the point, at any angle.
+//!    always ends before the point, at any angle. A thin wall has two faces: a scan of the face that looks the other way
+//!    contradicts nothing, and a surface that was not seen to come is cleared by beams closer than a cell alone.
 //! 3. **Noise belongs to the nearest surface.** A hit within four standard deviations of a standing surface is a hit on
 //!    that surface, not a new obstacle beside it.
 //! 4. **A new obstacle has the body that it shows.** Its visible outline, from one end to the other, is turned by 180°
