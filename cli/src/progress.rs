@@ -1,6 +1,6 @@
 //! The progress of a run: a bar in a terminal, plain lines elsewhere.
 
-use crate::terminal::say;
+use crate::terminal::{is_quiet, say, tell};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
 use interfaces::printable;
 use results::numbers::{duration, percent};
@@ -38,8 +38,8 @@ pub struct Progress {
 
 impl Progress {
     /// A run of `duration_s` of simulated time.
-    pub fn of_time(duration_s: f64, is_quiet: bool) -> Self {
-        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet)
+    pub fn of_time(duration_s: f64) -> Self {
+        Self::new(milliseconds(duration_s), OF_TIME, FIRST)
     }
 
     /// The same, of a run that goes on from a simulated time.
@@ -50,8 +50,8 @@ impl Progress {
     }
 
     /// A number of `what`: trials, or scans of a log.
-    pub fn of_count(count: usize, what: &'static str, is_quiet: bool) -> Self {
-        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet);
+    pub fn of_count(count: usize, what: &'static str) -> Self {
+        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY);
         progress.bar.set_prefix(what);
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY); // The time left changes during long trials.
@@ -60,9 +60,8 @@ impl Progress {
     }
 
     /// Work of a length that is not known: a spinner in a terminal, nothing elsewhere.
-    pub fn of_work(what: String, is_quiet: bool) -> Self {
-        let is_hidden = is_quiet || !stderr().is_terminal();
-        let progress = Self::new(0, OF_WORK, LINE_EVERY, is_hidden);
+    pub fn of_work(what: String) -> Self {
+        let progress = Self::new(0, OF_WORK, LINE_EVERY);
         progress.bar.set_message(printable(&what).into_owned());
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY);
@@ -70,8 +69,8 @@ impl Progress {
         progress
     }
 
-    fn new(length: u64, template: &str, first: Duration, is_quiet: bool) -> Self {
-        let (kind, target) = if is_quiet {
+    fn new(length: u64, template: &str, first: Duration) -> Self {
+        let (kind, target) = if is_quiet() {
             (Kind::Silent, ProgressDrawTarget::hidden())
         } else if stderr().is_terminal() {
             (Kind::Bar, ProgressDrawTarget::stderr())
@@ -117,9 +116,9 @@ impl Progress {
         }
     }
 
-    /// Prints a line to the error output, above the bar.
+    /// Prints a line to the error output, above the bar, unless only errors are printed.
     pub fn say(&self, what: impl Display) {
-        self.bar.suspend(|| say(stderr(), format_args!("{what}")));
+        self.bar.suspend(|| tell(what));
     }
 
     fn time_left(&self) -> String {

@@ -15,14 +15,19 @@ pub fn say(mut to: impl Write, what: impl Display) {
 /// Whether only errors are printed.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// From now on, only errors are printed: `--quiet`.
-pub fn be_quiet() {
-    QUIET.store(true, Ordering::Relaxed);
+/// From now on, only errors are printed, if `is_quiet`: `--quiet`.
+pub fn be_quiet(is_quiet: bool) {
+    QUIET.store(is_quiet, Ordering::Relaxed);
+}
+
+/// Whether only errors are printed.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
 }
 
 /// Prints lines about the work to the error output, unless only errors are printed.
 pub fn tell(what: impl Display) {
-    if !QUIET.load(Ordering::Relaxed) {
+    if !is_quiet() {
         say(stderr(), what);
     }
 }
@@ -41,13 +46,16 @@ pub fn print(what: impl Display) -> anyhow::Result<()> {
     print_lines(printable(&what.to_string()))
 }
 
-/// Prints lines to the standard output.
+/// Prints lines to the standard output, unless only errors are printed.
 ///
 /// # Errors
 ///
 /// When the line cannot be written, for example to a file on a full disk. A closed pipe (for example `| head`) is
 /// no error.
 pub fn print_lines(what: impl Display) -> anyhow::Result<()> {
+    if is_quiet() {
+        return Ok(());
+    }
     let mut to = stdout().lock();
     check_printed(writeln!(to, "{}", printable_lines(&what.to_string())).and_then(|()| to.flush()))
 }

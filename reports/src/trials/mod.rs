@@ -15,14 +15,13 @@ use clap::builder::TypedValueParser;
 use clap::{Args, Parser};
 use cli::flags::{folder, value_of};
 use cli::program::one_of;
-use cli::terminal::say;
+use cli::terminal::tell;
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use run::ShardCommand;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
-use std::io::stderr;
 use std::path::PathBuf;
 
 /// The groups of options that do not change the results of an experiment.
@@ -193,7 +192,7 @@ impl<K: TrialKind> TrialArgs<K> {
 
     fn load(&self, name: &str) -> anyhow::Result<K::Spec> {
         let (world, warnings) = self.kind.load(name)?;
-        warnings.iter().filter(|_| !self.quiet).for_each(|warning| say(stderr(), warning));
+        warnings.iter().for_each(tell);
         Ok(world)
     }
 }

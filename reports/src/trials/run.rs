@@ -9,7 +9,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use cli::flags::folder;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
 use cli::progress::Progress;
-use cli::terminal::{print, print_lines, say};
+use cli::terminal::{be_quiet, print, print_lines, say};
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Trial, TrialWorld};
 use files::{RunFolder, write_file};
@@ -30,6 +30,7 @@ pub fn main<K: TrialKind>() -> ExitCode {
         if let Some(command) = &args.command {
             return command.run::<K>();
         }
+        be_quiet(args.quiet);
         let experiment = args.experiment().map_err(input)?;
         let is_canceled = interrupt_flag()?; // before any file is made
         match args.shard {
@@ -44,7 +45,7 @@ impl<K: TrialKind> TrialArgs<K> {
     fn run(&self, experiment: &Experiment<K::Spec>, is_canceled: &AtomicBool) -> Result<ExitCode, Failure> {
         let folder = results_folder(&self.out)?;
         let jobs = experiment.jobs();
-        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
+        let progress = Progress::of_count(jobs.len(), "trials");
         let run = || experiment.run(jobs, is_canceled, |_| progress.step());
         let mut trials = self.pool()?.install(run).map_err(anyhow::Error::from)?;
         drop(progress);
@@ -59,7 +60,7 @@ impl<K: TrialKind> TrialArgs<K> {
         let arguments = experiment_arguments::<K>();
         let settings = ReportSettings { interrupted, ..report_settings(experiment, arguments) };
         settings.sort(&mut trials);
-        let results = Results { folder, out: &self.out, world_names: &self.world, quiet: self.quiet };
+        let results = Results { folder, out: &self.out, world_names: &self.world };
         results.write(settings, &trials, &experiment.worlds)?;
         Ok(if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
     }
@@ -119,7 +120,6 @@ pub(super) struct Results<'a> {
     pub(super) out: &'a Path,
     /// The worlds as given: files that stay.
     pub(super) world_names: &'a [String],
-    pub(super) quiet: bool,
 }
 
 impl Results<'_> {
@@ -134,13 +134,11 @@ impl Results<'_> {
         let written = report.write(&self.folder, worlds).map_err(anyhow::Error::from)?;
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
         self.folder.finish(&inputs)?;
-        if !self.quiet {
-            print_lines(report.table())?;
-            if report.leaves_out_worlds() {
-                print_lines(format_args!("The worlds one by one are in {REPORT}.\n"))?;
-            }
-            print(format_args!("written to {}: {}", self.out.display(), written.join(", ")))?;
+        print_lines(report.table())?;
+        if report.leaves_out_worlds() {
+            print_lines(format_args!("The worlds one by one are in {REPORT}.\n"))?;
         }
+        print(format_args!("written to {}: {}", self.out.display(), written.join(", ")))?;
         Ok(())
     }
 }
@@ -173,12 +171,13 @@ impl ShardCommand {
     /// Carries out the subcommand.
     pub(super) fn run<K: TrialKind>(&self) -> Result<ExitCode, Failure> {
         let Self::Merge { dir, out, quiet } = self;
-        merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?;
+        be_quiet(*quiet);
+        merge::<K>(dir, out.as_deref().unwrap_or(dir))?;
         Ok(ExitCode::SUCCESS)
     }
 }
 
-fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failure> {
+fn merge<K: TrialKind>(dir: &Path, out: &Path) -> Result<(), Failure> {
     let shards = Shards::read(dir).map_err(input)?;
     shards.check(K::NAME, env!("CARGO_PKG_VERSION")).map_err(input)?;
     let found = &shards.header;
@@ -195,7 +194,7 @@ fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failur
     let mut trials = shards.trials(&experiment).map_err(input)?;
     settings.sort(&mut trials);
     let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
-    let results = Results { folder, out, world_names: &args.world, quiet };
+    let results = Results { folder, out, world_names: &args.world };
     results.write(settings, &trials, &experiment.worlds)
 }
 
@@ -215,14 +214,12 @@ impl<K: TrialKind> TrialArgs<K> {
     ) -> Result<ExitCode, Failure> {
         let header = header::<K>(experiment_arguments::<K>(), shard, experiment);
         let Some(file) = ShardFile::open(&self.out, &header).map_err(input)? else {
-            if !self.quiet {
-                print(format_args!("shard {shard} is complete already"))?;
-            }
+            print(format_args!("shard {shard} is complete already"))?;
             return Ok(ExitCode::SUCCESS);
         };
         let mut jobs = experiment.jobs();
         jobs.retain(|trial| shard.has(trial.number));
-        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
+        let progress = Progress::of_count(jobs.len(), "trials");
         let run = || experiment.run(jobs, is_canceled, |_| progress.step());
         let trials = self.pool()?.install(run).map_err(anyhow::Error::from)?;
         drop(progress);
@@ -232,9 +229,7 @@ impl<K: TrialKind> TrialArgs<K> {
         }
         let path = file.path.clone();
         file.write(&trials).map_err(anyhow::Error::from)?;
-        if !self.quiet {
-            print(format_args!("shard {shard} is complete: {} trials in {}", trials.len(), path.display()))?;
-        }
+        print(format_args!("shard {shard} is complete: {} trials in {}", trials.len(), path.display()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

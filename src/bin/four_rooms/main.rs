@@ -37,9 +37,7 @@ enum Ended {
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
-    if args.quiet {
-        be_quiet();
-    }
+    be_quiet(args.quiet);
     let Args { rrd, gif, mcap, state, .. } = args;
     let files = [("--rrd", rrd), ("--gif", gif), ("--mcap", mcap), ("--state", state)];
     let files = files.map(|(flag, file)| (flag, file.as_deref()));

@@ -72,8 +72,8 @@ impl<'a> Outputs<'a> {
         if let Some(problem) = &reported {
             note(problem);
         }
-        let progress = Progress::of_time(args.duration, args.quiet).from(began_s);
-        if began_s > 0.0 && !args.quiet {
+        let progress = Progress::of_time(args.duration).from(began_s);
+        if began_s > 0.0 {
             progress.say(format_args!("the run goes on from {began_s:.1} s"));
         }
         let is_complete = true;
@@ -176,10 +176,8 @@ impl<'a> Outputs<'a> {
         }
         let read = [Some(args.world.as_ref()), args.map.as_deref(), args.tour.as_deref()];
         self.folder.finish(&read.into_iter().flatten().collect::<Vec<&Path>>())?;
-        if !args.quiet {
-            let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
-            print_lines(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
-        }
+        let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
+        print_lines(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
         Ok(self.is_complete && failures.is_empty())
     }
 }

@@ -20,14 +20,9 @@ pub(crate) struct Source {
 
 /// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_kept`: whether a log must
 /// be recognized in a later run.
-pub(crate) fn open(
-    files: &[PathBuf],
-    choice: &TopicChoice,
-    is_kept: bool,
-    is_quiet: bool,
-) -> anyhow::Result<Vec<Source>> {
+pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_kept: bool) -> anyhow::Result<Vec<Source>> {
     let open = |file: &PathBuf| {
-        let busy = || Progress::of_work(format!("reading {}", file.display()), is_quiet);
+        let busy = || Progress::of_work(format!("reading {}", file.display()));
         let reading = busy();
         let log = Log::open(file, choice);
         drop(reading);

@@ -72,9 +72,7 @@ impl Job<'_> {
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
-    if args.quiet {
-        be_quiet();
-    }
+    be_quiet(args.quiet);
     let begin = Instant::now();
     let (out, mcap, state) = (Some(args.out.as_path()), args.mcap.as_deref(), args.state.as_deref());
     let places = args.places.as_deref();
@@ -83,7 +81,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let names = places.map(place_names::read).transpose().map_err(input)?;
     let (mut state_file, loaded) = SurveyStateFile::open(args.state.as_deref(), args.state_every)?;
     let choice = args.topics(loaded.as_ref()).map_err(input)?;
-    let given = logs_in_order::open(&args.files, &choice, state_file.is_kept(), args.quiet).map_err(input)?;
+    let given = logs_in_order::open(&args.files, &choice, state_file.is_kept()).map_err(input)?;
     let settings = args.settings(&given, loaded.as_ref()).map_err(input)?;
     let mut survey = state_file.survey(loaded, &settings, args.noise.is_none())?;
     if let Some(names) = names {
@@ -126,13 +124,8 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         let (reasons, other) = (summary.verdict_reasons.join("; "), job.other_poses());
         say(stderr(), format_args!("error: the map is not usable: {reasons}{other}"));
     }
-    if !args.quiet {
-        let out = args.out.display();
-        print_lines(format_args!(
-            "{summary}\n  files     {out}: open {}",
-            args.out.join(output::PAGE).display()
-        ))?;
-    }
+    let (files, page) = (args.out.display(), args.out.join(output::PAGE));
+    print_lines(format_args!("{summary}\n  files     {files}: open {}", page.display()))?;
     Ok(if !learned.is_shown || !state_file.is_written {
         ExitCode::FAILURE
     } else if learned.is_interrupted {

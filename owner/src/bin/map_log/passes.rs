@@ -83,8 +83,8 @@ fn begin(job: &Job, number: usize, stage: Stage) -> Progress {
     let source = &job.sources[number];
     tell(format_args!("{}: {what}", source.entry.name));
     match stage {
-        Stage::Loops => Progress::of_work(format!("{}: {what}", source.entry.name), job.args.quiet),
-        _ => Progress::of_count(source.log.summary().scans, "scans", job.args.quiet),
+        Stage::Loops => Progress::of_work(format!("{}: {what}", source.entry.name)),
+        _ => Progress::of_count(source.log.summary().scans, "scans"),
     }
 }
 
@@ -179,7 +179,7 @@ impl Learned {
             0 => tell(format_args!("{name}: learning what changes")),
             _ => tell(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
         }
-        let busy = Progress::of_work(format!("{name}: what beams without a return mean"), job.args.quiet);
+        let busy = Progress::of_work(format!("{name}: what beams without a return mean"));
         let replay = survey.replay(log, &source.log).map_err(input);
         drop(busy);
         let replay = replay?;
@@ -191,8 +191,7 @@ impl Learned {
             }
             self.no_return.push(scanner);
         }
-        let progress =
-            Progress::of_count(source.log.summary().scans.saturating_sub(used), "scans", job.args.quiet);
+        let progress = Progress::of_count(source.log.summary().scans.saturating_sub(used), "scans");
         while let Some(turn) = survey.turn(&mut replay).map_err(input)? {
             progress.step();
             self.is_interrupted = job.is_interrupted();
