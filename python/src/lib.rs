@@ -5,7 +5,6 @@
 
 mod convert;
 mod fleet;
-mod forecast;
 mod localizer;
 mod logs;
 mod mapper;
@@ -27,8 +26,6 @@ mod _native {
     use crate::convert::{SnapshotError, WorldError};
     #[pymodule_export]
     use crate::fleet::Fleet;
-    #[pymodule_export]
-    use crate::forecast::Forecast;
     #[pymodule_export]
     use crate::localizer::{Estimate, Localizer};
     #[pymodule_export]
