@@ -22,8 +22,8 @@ use crate::bounds;
 use crate::bytes::content_hash;
 use crate::checks::times::{self, Times};
 use crate::checks::{Looks, Standing};
+use crate::laser_check::LaserCheck;
 use crate::log::{self, Log, RawReadings as _, Source};
-use crate::own_parts::OwnParts;
 use crate::summary::{LogError, LogSummary, TopicChoice, since_epoch};
 use inventory::Inventory;
 use message::Topic;
@@ -90,7 +90,7 @@ impl Bag {
             }
         }
         let has_pose_times = inspection.raw.has_pose_times();
-        let Inspection { raw, raw_s, standing, looks, own_parts, times } = inspection;
+        let Inspection { raw, raw_s, standing, looks, laser_check, times } = inspection;
         let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = odometry.stands() && standing.looks_so() && bag.plan.correction.is_none();
@@ -148,7 +148,7 @@ impl Bag {
         if stands {
             Arc::make_mut(&mut bag.plan).motion = MotionSource::Standing;
         }
-        Ok(Log::new(bag, (times.times_s, looks), own_parts, summary))
+        Ok(Log::new(bag, (times.times_s, looks), laser_check, summary))
     }
 
     fn raw(&self) -> RawReadings {
@@ -160,19 +160,19 @@ impl Bag {
     /// Reads all scans once.
     fn inspected(&self) -> Result<Inspection, LogError> {
         let (mut raw, mut raw_s, mut standing) = (self.raw(), Vec::new(), Standing::default());
-        let (mut looks, mut own_parts) = (Looks::default(), OwnParts::default());
+        let (mut looks, mut laser_check) = (Looks::default(), LaserCheck::default());
         while let Some(reading) = raw.next_reading()? {
             let unusable = |why| LogError::Unusable { file: self.name.clone(), why };
             bounds::one_more(raw_s.len()).map_err(unusable)?;
             raw_s.push(reading.time_s);
             standing.add(&reading.mount, &reading.scan);
             looks.add(reading.time_s, &reading.pose, &reading.scan.ranges_m);
-            own_parts.add(&reading);
+            laser_check.add(&reading);
         }
         looks.finish();
         let raw_s = looks.of_looks(raw_s);
         let times = times::repaired(&raw_s);
-        Ok(Inspection { raw, raw_s, standing, looks, own_parts, times })
+        Ok(Inspection { raw, raw_s, standing, looks, laser_check, times })
     }
 }
 
@@ -195,7 +195,7 @@ struct Inspection {
     raw_s: Vec<f64>,
     standing: Standing,
     looks: Looks,
-    own_parts: OwnParts,
+    laser_check: LaserCheck,
     times: Times,
 }
 

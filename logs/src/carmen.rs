@@ -30,8 +30,8 @@ mod tests;
 use crate::bounds::Unpacked;
 use crate::bytes::{Bytes, GZIP, content_hash};
 use crate::checks::{MIN_MOTION_M, MIN_MOTION_RAD};
+use crate::laser_check::LaserCheck;
 use crate::log::{Log, RawReadings, Source};
-use crate::own_parts::OwnParts;
 use crate::summary::{LogError, LogSummary, TopicChoice};
 use flate2::bufread::MultiGzDecoder;
 use geometry::Geometry;
@@ -84,11 +84,11 @@ impl CarmenLog {
             log.rules.takes_scan_poses = true;
         }
         // Which poses are those of the odometry is known only now.
-        let (mut own_parts, mut readings) = (OwnParts::default(), log.raw_readings()?);
+        let (mut laser_check, mut readings) = (LaserCheck::default(), log.raw_readings()?);
         while let Some(reading) = readings.next_reading()?.filter(|_| !summary.stands) {
-            own_parts.add(&reading);
+            laser_check.add(&reading);
         }
-        Ok(Log::new(log, looks, own_parts, summary))
+        Ok(Log::new(log, looks, laser_check, summary))
     }
 
     /// Checks that the log has corrected poses.

@@ -8,16 +8,18 @@
 mod archive;
 pub mod assemble;
 mod bag;
+mod beam_order;
 mod bounds;
 mod bytes;
 mod carmen;
 mod checks;
+mod laser_check;
 mod log;
 mod own_parts;
 mod summary;
 
+pub use laser_check::LaserCheck;
 pub use log::{Log, Readings};
-pub use own_parts::OwnParts;
 pub use ros::{self, McapWriter};
 pub use summary::{LogError, LogSummary, TopicChoice};
 

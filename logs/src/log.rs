@@ -1,7 +1,7 @@
 //! A log of any format.
 
 use crate::checks::TimedLooks;
-use crate::own_parts::OwnParts;
+use crate::laser_check::LaserCheck;
 use crate::summary::{LogError, LogSummary};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
@@ -18,7 +18,7 @@ pub struct Log {
     summary: LogSummary,
     /// With the times of the readings, repaired, s.
     looks: Arc<TimedLooks>,
-    own_parts: Arc<OwnParts>,
+    laser_check: Arc<LaserCheck>,
 }
 
 /// Readings with their times as written.
@@ -42,15 +42,15 @@ pub(crate) trait Source: Debug + Send + Sync {
 }
 
 impl Log {
-    /// `own_parts` has learned from all readings.
+    /// `laser_check` has learned from all readings.
     pub(crate) fn new(
         source: impl Source + 'static,
         looks: TimedLooks,
-        mut own_parts: OwnParts,
+        mut laser_check: LaserCheck,
         mut summary: LogSummary,
     ) -> Self {
-        summary.notes.extend(own_parts.judge());
-        Self { source: Arc::new(source), summary, looks: looks.into(), own_parts: Arc::new(own_parts) }
+        summary.notes.extend(laser_check.judge());
+        Self { source: Arc::new(source), summary, looks: looks.into(), laser_check: Arc::new(laser_check) }
     }
 
     /// What the log contains, and what was repaired.
@@ -59,14 +59,14 @@ impl Log {
     }
 
     /// The readings in the order of their times, from the first on. Times are since the first reading. The poses are those of
-    /// the odometry, interpolated to the end of the scan, and begin at the origin. Ranges of [parts of the robot](OwnParts) are
+    /// the odometry, interpolated to the end of the scan, and begin at the origin. Ranges of [parts of the robot](LaserCheck) are
     /// invalid.
     ///
     /// # Errors
     ///
     /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        Readings::new(self.source.raw_readings()?, self.looks.clone(), self.own_parts.clone())
+        Readings::new(self.source.raw_readings()?, self.looks.clone(), self.laser_check.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -101,12 +101,12 @@ pub struct Readings {
     /// `None` after the last reading.
     thread: Option<JoinHandle<()>>,
     timed: Arc<TimedLooks>,
-    own_parts: Arc<OwnParts>,
+    laser_check: Arc<LaserCheck>,
     given: usize,
 }
 
 impl Readings {
-    fn new(mut raw: Raw, looks: Arc<TimedLooks>, own_parts: Arc<OwnParts>) -> Result<Self, LogError> {
+    fn new(mut raw: Raw, looks: Arc<TimedLooks>, laser_check: Arc<LaserCheck>) -> Result<Self, LogError> {
         let (to, waiting) = sync_channel(AHEAD);
         let timed = looks.clone();
         // Ends with the last reading, and when nobody waits for the next one.
@@ -121,7 +121,7 @@ impl Readings {
         };
         let failed = |why| LogError::Io { file: "the thread that reads a log".to_owned(), why };
         let thread = Some(Builder::new().name("log".to_owned()).spawn(read).map_err(failed)?);
-        Ok(Self { waiting, thread, timed, own_parts, given: 0 })
+        Ok(Self { waiting, thread, timed, laser_check, given: 0 })
     }
 }
 
@@ -146,7 +146,7 @@ impl Iterator for Readings {
         let shift_s = time_s - reading.time_s;
         reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
         reading.time_s = time_s;
-        self.own_parts.remove(&mut reading);
+        self.laser_check.apply(&mut reading);
         Some(Ok(reading))
     }
 }

@@ -25,8 +25,6 @@ const MIN_SCANS: u32 = 5;
 const MIN_SHARE: f64 = 0.95;
 /// The distance that the robot must have driven, m.
 const MIN_DRIVEN_M: f64 = 5.0;
-/// Lasers beyond this number are not looked at.
-const MAX_LASERS: usize = 8;
 /// The box that is proposed for a filter is larger than the parts by this, m.
 const BOX_MARGIN_M: f64 = 0.05;
 
@@ -64,9 +62,10 @@ impl Direction {
     }
 }
 
-/// The beams of one laser.
+/// Finds the parts of a robot in the scans of one laser, by the poses of the odometry: a part is near, and its range is the same
+/// in 95 % of the scans while the robot drives 5 m or more and turns by 180° or more.
 #[derive(Clone, Debug, Default)]
-struct Laser {
+pub(crate) struct OwnParts {
     mount: Isometry2<f64>,
     directions: Vec<Direction>,
     /// The pose of the robot in the last scan that counted, and the distance driven until then, m.
@@ -78,9 +77,11 @@ struct Laser {
     left_out_m: Vec<f32>,
 }
 
-impl Laser {
-    fn add(&mut self, reading: &LaserReading) {
+impl OwnParts {
+    /// Learns from the next reading, as it was measured.
+    pub(crate) fn add(&mut self, reading: &LaserReading) {
         let LaserReading { pose, scan, .. } = reading;
+        self.mount = reading.mount;
         let step = self.last.inv_mul(pose);
         let step_m = step.translation.vector.norm();
         if step_m < MIN_MOTION_M && heading_rad(&step).abs() < MIN_MOTION_RAD {
@@ -97,8 +98,8 @@ impl Laser {
         }
     }
 
-    /// Decides by the scans so far. Returns a note if parts are known now and were not before.
-    fn judge(&mut self) -> Option<String> {
+    /// Decides by the scans so far what [`remove`](Self::remove) leaves out. Returns a note if parts are known now and were not before.
+    pub(crate) fn judge(&mut self) -> Option<String> {
         let is_new = self.parts.is_empty();
         let seen = self.directions.iter().enumerate().filter(|_| self.driven_m >= MIN_DRIVEN_M);
         let parts = seen.filter(|(_, direction)| direction.is_part());
@@ -111,6 +112,20 @@ impl Laser {
             }
         }
         self.note().filter(|_| is_new)
+    }
+
+    /// Makes the ranges up to a part of the robot invalid, and beams without a return beside it: a part hides what is behind it.
+    pub(crate) fn remove(&self, reading: &mut LaserReading) {
+        if self.parts.is_empty() {
+            return;
+        }
+        for beam in 0..reading.scan.ranges_m.len() {
+            let left_out_m = self.left_out_m[cyclic(reading.scan.angle_rad(beam), DIRECTIONS)];
+            let range_m = &mut reading.scan.ranges_m[beam];
+            if *range_m <= left_out_m || *range_m == f32::INFINITY && !left_out_m.is_nan() {
+                *range_m = f32::NAN;
+            }
+        }
     }
 
     /// What was found, in a sentence.
@@ -136,44 +151,6 @@ impl Laser {
             min.y - BOX_MARGIN_M,
             max.y + BOX_MARGIN_M
         ))
-    }
-}
-
-/// Finds the parts of a robot in the scans of its lasers, by the poses of the odometry: a part is near, and its range is the same
-/// in 95 % of the scans while the robot drives 5 m or more and turns by 180° or more.
-#[derive(Clone, Debug, Default)]
-pub struct OwnParts {
-    lasers: Vec<Laser>,
-}
-
-impl OwnParts {
-    /// Learns from the next reading, as it was measured.
-    pub fn add(&mut self, reading: &LaserReading) {
-        let is_new = self.lasers.iter().all(|laser| laser.mount != reading.mount);
-        if is_new && self.lasers.len() < MAX_LASERS {
-            self.lasers.push(Laser { mount: reading.mount, ..Laser::default() });
-        }
-        let laser = self.lasers.iter_mut().find(|laser| laser.mount == reading.mount);
-        laser.into_iter().for_each(|laser| laser.add(reading));
-    }
-
-    /// Decides by the readings so far what [`remove`](Self::remove) leaves out. Returns the notes on lasers for which parts
-    /// are known now and were not before.
-    pub fn judge(&mut self) -> Vec<String> {
-        self.lasers.iter_mut().filter_map(Laser::judge).collect()
-    }
-
-    /// Makes the ranges up to a part of the robot invalid, and beams without a return beside it: a part hides what is behind it.
-    pub fn remove(&self, reading: &mut LaserReading) {
-        let known = |laser: &&Laser| laser.mount == reading.mount && !laser.parts.is_empty();
-        let Some(laser) = self.lasers.iter().find(known) else { return };
-        for beam in 0..reading.scan.ranges_m.len() {
-            let left_out_m = laser.left_out_m[cyclic(reading.scan.angle_rad(beam), DIRECTIONS)];
-            let range_m = &mut reading.scan.ranges_m[beam];
-            if *range_m <= left_out_m || *range_m == f32::INFINITY && !left_out_m.is_nan() {
-                *range_m = f32::NAN;
-            }
-        }
     }
 }
 

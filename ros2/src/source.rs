@@ -2,7 +2,7 @@
 
 use crate::message::{Header, LaserScan, Message, Odometry, Time, Topic, Transforms};
 use interfaces::{LaserReading, heading_rad};
-use logs::OwnParts;
+use logs::LaserCheck;
 use logs::assemble::{self, Assembler, Chain, Waiting};
 use nalgebra::{Isometry2, Isometry3};
 use std::time::{Duration, Instant};
@@ -136,7 +136,7 @@ pub(crate) struct Source {
     laser: Option<(String, Instant)>,
     /// The frame of a laser without a place on the robot.
     lost_laser: Option<String>,
-    own_parts: OwnParts,
+    laser_check: LaserCheck,
     pub(crate) count: ScanCount,
     notes: Vec<String>,
 }
@@ -196,9 +196,9 @@ impl Source {
                 self.notes.push("a scan is left out: there is no pose of the robot at its time".to_owned());
                 continue;
             }
-            self.own_parts.add(&reading);
-            self.notes.extend(self.own_parts.judge());
-            self.own_parts.remove(&mut reading);
+            self.laser_check.add(&reading);
+            self.notes.extend(self.laser_check.judge());
+            self.laser_check.apply(&mut reading);
             let (in_odom, in_first_odom) =
                 (odometry.origin() * reading.pose, odometry.first() * reading.pose);
             let stamp = Time::from_ns(end_ns);

@@ -1,4 +1,4 @@
-use super::OwnParts;
+use crate::laser_check::{LaserCheck, MAX_LASERS};
 use interfaces::{LaserReading, Scan, heading_rad, pose, wrap_rad};
 use nalgebra::Isometry2;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -70,11 +70,11 @@ fn readings(
     })
 }
 
-fn learned(readings: impl Iterator<Item = LaserReading>) -> (OwnParts, Vec<String>) {
-    let mut own_parts = OwnParts::default();
-    readings.for_each(|reading| own_parts.add(&reading));
-    let notes = own_parts.judge();
-    (own_parts, notes)
+fn learned(readings: impl Iterator<Item = LaserReading>) -> (LaserCheck, Vec<String>) {
+    let mut check = LaserCheck::default();
+    readings.for_each(|reading| check.add(&reading));
+    let notes = check.judge();
+    (check, notes)
 }
 
 const NOTHING: fn(f64, usize) -> f64 = |_, _| f64::INFINITY;
@@ -91,13 +91,13 @@ fn around() -> Vec<Isometry2<f64>> {
 
 #[test]
 fn ranges_up_to_a_post_are_left_out_and_said() {
-    let (own_parts, notes) = learned(readings(HALL, &around(), POST));
+    let (check, notes) = learned(readings(HALL, &around(), POST));
     insta::assert_snapshot!(notes.join("\n"), @"the laser sees parts of the robot itself, up to 0.20 m away, in the directions 140° to 146° from the front of the robot: these ranges are left out, and what is behind them is not observed; laser_filters/LaserScanBoxFilter does the same in ROS, with the frame of the robot as box_frame and min_x: -0.22, max_x: -0.10, min_y: 0.06, max_y: 0.18, min_z: -1.0, max_z: 1.0");
     for (mut reading, free) in readings(HALL, &around(), POST).zip(readings(HALL, &around(), NOTHING)) {
         // A post that swallows a beam does not show free space.
         let behind = reading.scan.ranges_m.iter().position(|range_m| *range_m < 0.25).unwrap();
         reading.scan.ranges_m[behind] = f32::INFINITY;
-        own_parts.remove(&mut reading);
+        check.apply(&mut reading);
         for (found, wall) in reading.scan.ranges_m.iter().zip(&free.scan.ranges_m) {
             assert!(found.is_nan() || found == wall, "{found} {wall}");
         }
@@ -144,11 +144,11 @@ fn a_person_who_follows_is_no_part() {
 
 #[test]
 fn parts_are_known_while_the_robot_drives_and_are_said_once() {
-    let (mut own_parts, mut notes) = (OwnParts::default(), Vec::new());
+    let (mut check, mut notes) = (LaserCheck::default(), Vec::new());
     let mut known = None;
     for (number, reading) in readings(HALL, &around(), POST).enumerate() {
-        own_parts.add(&reading);
-        notes.extend(own_parts.judge());
+        check.add(&reading);
+        notes.extend(check.judge());
         known = known.or(notes.first().map(|_| number));
     }
     // After half a round.
@@ -158,9 +158,9 @@ fn parts_are_known_while_the_robot_drives_and_are_said_once() {
 
 #[test]
 fn lasers_that_move_on_the_robot_fill_no_memory() {
-    let mut own_parts = OwnParts::default();
+    let mut check = LaserCheck::default();
     for (number, reading) in readings(HALL, &around(), POST).enumerate() {
-        own_parts.add(&LaserReading { mount: pose(0.001 * number as f64, 0.0, 0.0), ..reading });
+        check.add(&LaserReading { mount: pose(0.001 * number as f64, 0.0, 0.0), ..reading });
     }
-    assert_eq!((own_parts.lasers.len(), own_parts.judge().len()), (super::MAX_LASERS, 0));
+    assert_eq!((check.lasers.len(), check.judge().len()), (MAX_LASERS, 0));
 }
