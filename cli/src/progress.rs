@@ -1,6 +1,6 @@
 //! The progress of a run: a bar in a terminal, plain lines elsewhere.
 
-use crate::terminal::{is_quiet, say, tell};
+use crate::terminal::{is_quiet, say};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
 use interfaces::printable;
 use results::numbers::{duration, percent};
@@ -116,9 +116,9 @@ impl Progress {
         }
     }
 
-    /// Prints a line to the error output, above the bar, unless only errors are printed.
+    /// Prints a line to the error output, above the bar.
     pub fn say(&self, what: impl Display) {
-        self.bar.suspend(|| tell(what));
+        self.bar.suspend(|| say(stderr(), format_args!("{what}")));
     }
 
     fn time_left(&self) -> String {

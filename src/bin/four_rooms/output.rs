@@ -7,7 +7,7 @@ use anyhow::Context;
 use cli::bag::RunBag;
 use cli::program::{Failure, arguments, input, not_opened, results_folder};
 use cli::progress::Progress;
-use cli::terminal::{note, print_lines, say};
+use cli::terminal::{note, print_lines, say, tell};
 use draw::Film;
 use draw::layers::Layer;
 use draw::pictures::FIGURE_5_FILE;
@@ -72,10 +72,10 @@ impl<'a> Outputs<'a> {
         if let Some(problem) = &reported {
             note(problem);
         }
-        let progress = Progress::of_time(args.duration).from(began_s);
         if began_s > 0.0 {
-            progress.say(format_args!("the run goes on from {began_s:.1} s"));
+            tell(format_args!("the run goes on from {began_s:.1} s"));
         }
+        let progress = Progress::of_time(args.duration).from(began_s);
         let is_complete = true;
         Ok(Self {
             args,
